@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grid/quantiser.h"
+
+#include <bit>
+#include <limits>
+
+namespace fasttree {
+namespace {
+
+// Binary32 values in their order as integers; both zeros are 0.
+std::int32_t to_ordinal(float v) {
+  const auto i = std::bit_cast<std::int32_t>(v);
+  return i >= 0 ? i : std::numeric_limits<std::int32_t>::min() - i;
+}
+
+float from_ordinal(std::int32_t i) {
+  return std::bit_cast<float>(i >= 0 ? i : std::numeric_limits<std::int32_t>::min() - i);
+}
+
+}  // namespace
+
+AxisQuantiser make_axis_quantiser(const Box3& bounds, const AxisLevels& levels, std::size_t axis) {
+  if (!levels.live[axis]) return {bounds.lo[axis], 0.0f};
+  return {bounds.lo[axis], finest_scale(bounds.hi[axis] - bounds.lo[axis])};
+}
+
+float find_plane(const AxisQuantiser& quantiser, float hi, std::uint32_t k) {
+  // q15(lo) = 0 < k, and q15(hi) is the last cell: extent * scale rounds to no less than 2^15 - 1.
+  std::int64_t below = to_ordinal(quantiser.lo);
+  std::int64_t above = to_ordinal(hi);
+  while (above - below > 1) {
+    const std::int64_t middle = below + (above - below) / 2;
+    if (quantiser(from_ordinal(static_cast<std::int32_t>(middle))) >= k) {
+      above = middle;
+    } else {
+      below = middle;
+    }
+  }
+  return from_ordinal(static_cast<std::int32_t>(above));
+}
+
+std::vector<float> make_planes(const AxisQuantiser& quantiser, float hi, int bits) {
+  std::vector<float> planes(std::size_t{1} << bits);
+  planes[0] = quantiser.lo;
+  for (std::uint32_t k = 1; k < planes.size(); ++k) {
+    planes[k] = find_plane(quantiser, hi, k << (kMaxAxisBits - bits));
+  }
+  return planes;
+}
+
+}  // namespace fasttree
