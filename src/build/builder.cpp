@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <new>
+#include <utility>
+
+#include "baseline/baseline.h"
+#include "build/morton_build.h"
+#include "fasttree/build.h"
+#include "fasttree/device_image.h"
+#include "reference/reference_build.h"
+#include "reference/scene_bound.h"
+#include "support/stage_clock.h"
+
+namespace fasttree {
+
+struct Builder::Impl {
+  build::Workspace workspace;
+  build::TreeArrays arrays;
+  BuildStats stats;
+
+  // Each takes what is left in `tree` as memory and fills it with the new one.
+  Status build_fast(const MeshView& mesh, const BuildSettings& settings, Tree& tree) {
+    tree.release(arrays.nodes, arrays.ids);
+    Status status = build::morton_build(mesh, settings, workspace, arrays, stats);
+    if (!status.ok()) return status;
+    tree = Tree(arrays.info, std::move(arrays.nodes), std::move(arrays.ids));
+    return {};
+  }
+
+  Status build_reference(const MeshView& mesh, const BuildSettings& settings, Tree& tree) {
+    Result<reference::ReferenceBuild> built = reference::build(mesh, settings, stats);
+    if (!built.ok()) return built.status();
+    Result<Tree> converted = tree_from_device_image(reference::device_image(built.value()));
+    if (!converted.ok()) return converted.status();
+    tree = std::move(converted).value();
+    return {};
+  }
+
+  Status build_baseline(const MeshView& mesh, const BuildSettings& settings, Tree& tree) {
+    if (Status status = validate(mesh); !status.ok()) return status;
+    const bool exact = settings.profile == Profile::sah_exact;
+    StageClock clock(settings.progress, stats.stages);
+    Status status;
+    Box3 bounds;
+    clock.stage("scene_bound", 0.0, 0.01, [&] {
+      const Result<Box3> result = reference::scene_bound(mesh);
+      status = result.status();
+      if (result.ok()) bounds = result.value();
+    });
+    if (!status.ok()) return status;
+    clock.stage(exact ? "sah_exact" : "sah_binned", 0.01, 1.0, [&] {
+      const BaselineInput input{mesh, bounds, settings.sah_costs, settings.memory_limit_bytes,
+                                settings.progress};
+      Result<Tree> result = exact ? build_sah_exact(input) : build_sah_binned(input);
+      status = result.status();
+      if (result.ok()) tree = std::move(result).value();
+    });
+    if (!status.ok()) return status;
+    if (clock.cancelled()) return clock.cancelled_status();
+    stats.triangles = mesh.triangle_count;
+    stats.references = tree.ids().size();
+    return {};
+  }
+
+  Status build(const MeshView& mesh, const BuildSettings& settings, Tree& tree) {
+    switch (settings.profile) {
+      case Profile::paper:
+        return settings.implementation == Implementation::reference
+                   ? build_reference(mesh, settings, tree)
+                   : build_fast(mesh, settings, tree);
+      case Profile::sah_exact:
+      case Profile::sah_binned:
+        return build_baseline(mesh, settings, tree);
+    }
+    return {StatusCode::invalid_argument, "build: no profile has the number " +
+                                              std::to_string(static_cast<int>(settings.profile))};
+  }
+};
+
+Builder::Builder() : impl_(std::make_unique<Impl>()) {}
+Builder::~Builder() = default;
+Builder::Builder(Builder&&) noexcept = default;
+Builder& Builder::operator=(Builder&&) noexcept = default;
+
+Result<Tree> Builder::build(const MeshView& mesh, const BuildSettings& settings) {
+  Tree tree;
+  if (Status status = build(mesh, settings, tree); !status.ok()) return status;
+  return tree;
+}
+
+Status Builder::build(const MeshView& mesh, const BuildSettings& settings, Tree& tree) {
+  impl_->stats = {};
+  const auto start = std::chrono::steady_clock::now();
+  Status status;
+  try {
+    status = impl_->build(mesh, settings, tree);
+  } catch (const std::bad_alloc&) {
+    status = {StatusCode::resource_limit,
+              "build: out of memory for " + std::to_string(mesh.triangle_count) +
+                  " triangles. Set a memory limit, ask for a smaller depth or split the mesh."};
+  }
+  if (!status.ok()) tree = Tree();
+  const auto stop = std::chrono::steady_clock::now();
+  impl_->stats.build_ms = std::chrono::duration<double, std::milli>(stop - start).count();
+  return status;
+}
+
+const BuildStats& Builder::stats() const {
+  return impl_->stats;
+}
+
+void Builder::shrink() {
+  impl_->workspace = {};
+  impl_->arrays = {};
+}
+
+}  // namespace fasttree
