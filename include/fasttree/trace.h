@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "fasttree/mesh.h"
 #include "fasttree/status.h"
@@ -75,5 +76,20 @@ class Tracer {
 /// Every triangle tested with the same routine: the judge of every tracer.
 Hit brute_force_closest(const MeshView& mesh, const Ray& ray);
 bool brute_force_occluded(const MeshView& mesh, const Ray& ray);
+
+/// The same for many rays: the same answers to the bit, about ten times as fast. Copies the
+/// triangles (36 bytes each) into an order that vector instructions like. Thread-safe.
+class BruteForce {
+ public:
+  explicit BruteForce(const MeshView& mesh);
+
+  Hit closest(const Ray& ray) const;
+  bool occluded(const Ray& ray) const;
+
+ private:
+  MeshView mesh_;
+  std::size_t stride_ = 0;          ///< triangles, rounded up to whole vectors
+  std::vector<float> coordinates_;  ///< [corner][axis][triangle]
+};
 
 }  // namespace fasttree
