@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scenes that need no file: "scene:NAME[:TRIANGLES[:FRAME]]".
+// The scenes that need no file: "scene:NAME[:TRIANGLES[:FRAME]]". TRIANGLES is met as nearly as the
+// shape allows and is never under the shape's coarsest form (the hall's has about 25,000); it may
+// end in k or M. FRAME counts from 0 and wraps around.
+//
+// The same name gives the same mesh on every machine and for every number of threads, as far as
+// sine and cosine of the C library agree: they are taken in binary64 and rounded once to binary32,
+// so a difference in their last bit hardly ever shows.
 #pragma once
 
 #include <cstdint>
