@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// fasttree build: from a scene to a tree, with times and quality.
+#include "fasttree/build.h"
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "command.h"
+#include "fasttree/quality.h"
+#include "fasttree/tree_file.h"
+#include "inputs.h"
+#include "options.h"
+#include "output.h"
+#include "progress.h"
+
+namespace fasttree::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+class BuildCommand : public Command {
+ public:
+  const char* name() const override { return "build"; }
+  const char* summary() const override { return "Build a scene's kd-tree"; }
+  const char* details() const override {
+    return "Prints the time of each stage, the tree's quality and a hash of its bytes: equal "
+           "trees\n"
+           "have equal hashes, for any number of threads and any instruction set.\n\n"
+           "Example:\n"
+           "  fasttree build bunny.ply --axes longest --out bunny.ft --json figures.json";
+  }
+
+  void declare(Options& options) override {
+    options.positional(scene_, "SCENE", "A mesh file, or scene:NAME");
+    build_.declare(options);
+    options.count(repeat_, "--repeat", "Builds in the same memory; times are their medians", 1,
+                  100000);
+    options.text(out_, "--out", "FILE", "Save the tree");
+  }
+
+  int run(Context& context) override {
+    const LoadedScene scene = load_scene(context, scene_, build_.settings.memory_limit_bytes);
+    Tree tree;
+    const Times times = build_repeatedly(context, scene.view, tree);
+    const Quality quality = measure_quality(tree, build_.settings.sah_costs);
+    double save_ms = 0;
+    if (!out_.empty()) {
+      const auto start = std::chrono::steady_clock::now();
+      check(save_tree(tree, out_));
+      save_ms = milliseconds_since(start);
+    }
+    context.progress.clear();
+    print(context.output, scene, tree, times, quality);
+    context.output.json(json(context, scene, tree, times, quality, save_ms), context.common.json);
+    return kDone;
+  }
+
+ private:
+  struct Times {
+    std::vector<double> builds;
+    std::vector<StageTime> stages;  ///< medians
+    std::uint64_t planned_bytes = 0;
+  };
+
+  Times build_repeatedly(Context& context, const MeshView& mesh, Tree& tree) const {
+    Times times;
+    Builder builder;
+    std::vector<std::vector<double>> stage_times;
+    for (std::uint32_t i = 0; i < repeat_; ++i) {
+      const std::string what =
+          repeat_ > 1 ? fmt::format("build {} of {}:", i + 1, repeat_) : std::string("building");
+      check(builder.build(mesh, build_.with_progress(context, what), tree));
+      const BuildStats& stats = builder.stats();
+      times.builds.push_back(stats.build_ms);
+      times.planned_bytes = stats.planned_bytes;
+      times.stages = stats.stages;
+      stage_times.resize(stats.stages.size());
+      for (std::size_t s = 0; s < stats.stages.size(); ++s) {
+        stage_times[s].push_back(stats.stages[s].ms);
+      }
+      stop_if_cancelled();
+    }
+    for (std::size_t s = 0; s < times.stages.size(); ++s) {
+      times.stages[s].ms = median(stage_times[s]);
+    }
+    return times;
+  }
+
+  void print(Output& output, const LoadedScene& scene, const Tree& tree, const Times& times,
+             const Quality& quality) const {
+    const TreeInfo& info = tree.info();
+    output.line("scene                {} ({} triangles, read in {:.1f} ms)", scene.mesh.name,
+                with_commas(info.triangle_count), scene.load_ms);
+    if (info.profile == Profile::paper) {
+      output.line("profile              {}, {} axes, depth {}", to_string(info.profile),
+                  to_string(info.axes), info.depth);
+    } else {
+      output.line("profile              {}", to_string(info.profile));
+    }
+    output.line("build                {:.2f} ms{}", median(times.builds),
+                repeat_ > 1 ? fmt::format(" (median of {})", repeat_) : "");
+    for (const StageTime& stage : times.stages) {
+      output.line("  {:<18} {:.2f} ms", stage.stage, stage.ms);
+    }
+    print_quality(output, quality);
+    output.line("memory               {} (the tree itself {})", bytes_text(times.planned_bytes),
+                bytes_text(tree.nodes().size_bytes() + tree.ids().size_bytes()));
+    output.line("hash                 {}", hash_string(tree.hash()));
+    if (!out_.empty()) output.line("saved                {}", out_);
+  }
+
+  ordered_json json(const Context& context, const LoadedScene& scene, const Tree& tree,
+                    const Times& times, const Quality& quality, double save_ms) const {
+    const TreeInfo& info = tree.info();
+    ordered_json stages = ordered_json::array();
+    for (const StageTime& stage : times.stages) {
+      stages.push_back({{"stage", stage.stage}, {"time_ms", stage.ms}});
+    }
+    ordered_json json = json_of_program();
+    json["scene"] = scene.mesh.name;
+    json["source"] = scene_;
+    json["profile"] = to_string(info.profile);
+    json["axes"] =
+        info.profile == Profile::paper ? ordered_json(to_string(info.axes)) : ordered_json(nullptr);
+    json["implementation"] =
+        build_.settings.implementation == Implementation::fast ? "fast" : "reference";
+    json["simd"] = build_.settings.simd == Simd::scalar ? "scalar" : "widest";
+    json["threads"] = context.threads;
+    json["triangles"] = info.triangle_count;
+    json["vertices"] = scene.view.vertex_count;
+    json["depth"] = info.depth;
+    json["bits"] = info.bits;
+    json["bounds"] = json_of(info.bounds);
+    json["references"] = tree.ids().size();
+    json["leaves"] = tree.leaf_count();
+    json["nodes"] = tree.nodes().size();
+    json["build_ms"] = median(times.builds);
+    json["build_ms_all"] = times.builds;
+    json["load_ms"] = scene.load_ms;
+    if (!out_.empty()) {
+      json["save_ms"] = save_ms;
+      json["tree_file"] = out_;
+    }
+    json["stages"] = stages;
+    json["planned_bytes"] = times.planned_bytes;
+    json["tree_bytes"] = tree.nodes().size_bytes() + tree.ids().size_bytes();
+    json["tree_hash"] = hash_string(tree.hash());
+    json["quality"] = json_of(quality);
+    return json;
+  }
+
+  std::string scene_;
+  BuildOptions build_;
+  std::uint32_t repeat_ = 1;
+  std::string out_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_build_command() {
+  return std::make_unique<BuildCommand>();
+}
+
+}  // namespace fasttree::app
