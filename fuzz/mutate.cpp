@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mutate FORMAT COUNT SEED CORPUS [N]: parses COUNT damaged copies of the corpus's files and checks
+// mutate FORMAT COUNT SEED CORPUS: parses COUNT damaged copies of the corpus's files and checks
 // what the reader promises. Exit status 1 where it breaks one; the mutant is written to
 // mutant.FORMAT. A sanitizer stops the program itself; with N, only mutant N is made, written
 // there, and tried.
@@ -13,21 +13,28 @@
 #include "fuzz/mesh_check.h"
 #include "fuzz/mutator.h"
 
+// Of AddressSanitizer and its like, where the program is built with one.
+extern "C" void __sanitizer_set_death_callback(void (*)()) __attribute__((weak));
+
 namespace {
 
-void write_file(const std::string& path, const fasttree::fuzz::Bytes& bytes) {
-  std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()),
-             static_cast<std::streamsize>(bytes.size()));
+std::string mutant_path;
+const fasttree::fuzz::Bytes* current_mutant = nullptr;
+
+void write_mutant() {
+  if (current_mutant == nullptr) return;
+  std::ofstream(mutant_path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(current_mutant->data()),
+             static_cast<std::streamsize>(current_mutant->size()));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace fasttree::fuzz;
-  if (argc != 5 && argc != 6) {
+  if (argc != 5) {
     std::fprintf(stderr,
-                 "usage: %s FORMAT COUNT SEED CORPUS [N]\n"
+                 "usage: %s FORMAT COUNT SEED CORPUS\n"
                  "FORMAT: ply, obj, stl or gltf. For example: mutate ply 1000000 1 "
                  "fuzz/corpus/ply\n",
                  argv[0]);
@@ -42,25 +49,25 @@ int main(int argc, char** argv) {
     return 2;
   }
 
+  mutant_path = "mutant." + std::string(format->name);
+  if (__sanitizer_set_death_callback != nullptr) __sanitizer_set_death_callback(&write_mutant);
+
   const auto start = std::chrono::steady_clock::now();
   Mutator mutator(corpus, seed);
   std::uint64_t meshes = 0;
   for (std::uint64_t i = 0; i < count; ++i) {
     const Bytes mutant = mutator.next();
-    const std::string path = "mutant." + std::string(format->name);
-    if (argc == 6) {
-      if (i != std::strtoull(argv[5], nullptr, 10)) continue;
-      write_file(path, mutant);
-    }
+    current_mutant = &mutant;
     bool is_mesh = false;
     const std::string broken = check_mesh_bytes(*format, mutant, &is_mesh);
     meshes += is_mesh ? 1 : 0;
     if (!broken.empty()) {
-      write_file(path, mutant);
+      write_mutant();
       std::fprintf(stderr, "mutate: number %llu (%s): %s\n", static_cast<unsigned long long>(i),
-                   path.c_str(), broken.c_str());
+                   mutant_path.c_str(), broken.c_str());
       return 1;
     }
+    current_mutant = nullptr;
   }
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -19,7 +19,8 @@ namespace fasttree::scene {
 namespace {
 
 std::string random_obj(std::mt19937& random) {
-  std::string text = "# generated\n";
+  // Texture coordinate and normal 1 have to exist for tinyobjloader.
+  std::string text = "# generated\nvt 0 0\nvn 0 0 1\n";
   int vertices = 0;
   for (int row = 0; row < 200; ++row) {
     const auto pick = random() % 10;
@@ -36,7 +37,8 @@ std::string random_obj(std::mt19937& random) {
       text += "f";
       for (std::uint32_t corner = 0, corners = 3 + random() % 5; corner < corners; ++corner) {
         const int index = static_cast<int>(random() % static_cast<std::uint32_t>(vertices));
-        text += " " + std::to_string(random() % 2 == 0 ? index + 1 : index - vertices);
+        text += ' ';
+        text += std::to_string(random() % 2 == 0 ? index + 1 : index - vertices);
         if (pick == 5) text += "/1";
         if (pick == 6) text += "//1";
         if (pick == 7) text += "/1/1";
@@ -52,8 +54,7 @@ std::string random_obj(std::mt19937& random) {
 TEST(ObjOracle, AgreesWithTinyobjloader) {
   std::mt19937 random(20);
   for (int file = 0; file < 200; ++file) {
-    // Texture coordinate and normal 1 have to exist for tinyobjloader.
-    const std::string text = "vt 0 0\nvn 0 0 1\n" + random_obj(random);
+    const std::string text = random_obj(random);
     tinyobj::attrib_t attributes;
     std::vector<tinyobj::shape_t> shapes;
     std::vector<tinyobj::material_t> materials;

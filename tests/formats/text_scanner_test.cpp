@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 #include <string>
-#include <vector>
 
 namespace fasttree::scene {
 namespace {
@@ -13,15 +13,15 @@ namespace {
 // "line:word word|line:word ..."
 std::string rows_of(std::string_view text, TextScanner::Options options = {}) {
   TextScanner scanner(text, options);
-  std::string out;
-  while (scanner.next_row()) {
-    out += (out.empty() ? "" : "|") + std::to_string(scanner.line()) + ":";
+  std::ostringstream out;
+  for (bool first = true; scanner.next_row(); first = false) {
+    out << (first ? "" : "|") << scanner.line() << ':';
     std::string_view word;
-    for (bool first = true; scanner.word(word); first = false) {
-      out += (first ? "" : " ") + std::string(word);
+    for (bool first_word = true; scanner.word(word); first_word = false) {
+      out << (first_word ? "" : " ") << word;
     }
   }
-  return out;
+  return out.str();
 }
 
 TEST(TextScanner, EndsLinesInLfCrLfOrCr) {
