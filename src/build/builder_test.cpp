@@ -82,6 +82,24 @@ TEST(Builder, EqualsTheReferenceOnRandomMeshes) {
   }));
 }
 
+// Vertices that no triangle uses count for nothing, wherever they are.
+TEST(Builder, PassesOverVerticesNobodyUses) {
+  const test::OwnedMesh used = test::sheet(30, 0.2f);
+  Builder builder;
+  const Tree expected = builder.build(used.view()).value();
+  for (const Vec3 stray : {Vec3{-9, 0, 0}, Vec3{0, 9, 0}, Vec3{NAN, 0, 0}, Vec3{0, INFINITY, 0},
+                           Vec3{3e38f, -3e38f, 0}, Vec3{0.5f, 0.5f, 0}}) {
+    test::OwnedMesh owned = used;
+    owned.positions.push_back(stray);
+    const Result<Tree> tree = builder.build(owned.view());
+    ASSERT_TRUE(tree.ok()) << tree.status().message();
+    expect_same_bytes(tree.value(), expected);
+  }
+  MeshView nothing;
+  nothing.vertex_count = 7;  // without positions, and nobody asks for them
+  EXPECT_EQ(builder.build(nothing).value().nodes().size(), 1u);
+}
+
 TEST(Builder, ReusesTheTreesMemory) {
   const test::OwnedMesh owned = test::soup(5000, 1, 0.02f);
   Builder builder;

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "build/triangle_block.h"
+#include "build/buckets.h"
+#include "build/triangle_boxes.h"
+#include "build/vertex_cells.h"
 #include "fasttree/build.h"
 #include "fasttree/mesh.h"
 #include "fasttree/tree.h"
@@ -15,14 +17,10 @@ namespace fasttree::build {
 
 /// Working memory kept from build to build.
 struct Workspace {
-  std::vector<StoredBox> boxes;                 ///< per triangle
-  std::vector<std::uint64_t> block_references;  ///< per block of kBlock triangles
-  std::vector<std::uint32_t> codes[2];          ///< per reference, back and forth in the sort
-  std::vector<std::uint32_t> ids;               ///< per reference, the sort's second buffer
-  std::vector<std::uint32_t> sort_counters;
-  std::vector<std::uint64_t> chunk_leaves;
-  std::vector<std::uint32_t> leaf_codes;
-  std::vector<std::uint32_t> leaf_first;
+  std::vector<VertexCell> vertices;
+  std::vector<TriangleBox> boxes;
+  Buckets buckets;
+  std::vector<std::uint32_t> first_node_of_bucket;
 };
 
 /// The arrays of a tree in the making.

@@ -37,8 +37,12 @@ TEST(NodeEmission, EqualsPathCompression) {
       const Result<Tree> expected = tree_from_device_image(reference::device_image(b));
       ASSERT_TRUE(expected.ok()) << expected.status().message();
 
+      std::vector<LeafStart> leaves;
+      for (std::size_t j = 0; j < b.leaves.size(); ++j) {
+        leaves.push_back({b.leaves.code[j], b.leaves.first[j]});
+      }
       std::vector<Node> nodes(2 * codes.size() - 1);
-      emit_nodes(b.leaves.code, b.leaves.first, first, b.grid, nodes);
+      emit_nodes(leaves, first, b.grid, 0, nodes);
       ASSERT_TRUE(std::equal(nodes.begin(), nodes.end(), expected.value().nodes().begin(),
                              expected.value().nodes().end()))
           << depth << ' ' << wanted;

@@ -3,9 +3,11 @@
 
 #include <string>
 
+#include "geometry/mesh_checks.h"
+
 namespace fasttree {
 
-Status validate(const MeshView& mesh) {
+Status validate_shape(const MeshView& mesh) {
   if (mesh.triangle_count == 0) return {};
   if (mesh.triangle_count > kMaxTriangles) {
     return {StatusCode::resource_limit, "mesh: " + std::to_string(mesh.triangle_count) +
@@ -27,8 +29,13 @@ Status validate(const MeshView& mesh) {
                   std::to_string(std::uint64_t{3} * mesh.triangle_count) + " vertices, not " +
                   std::to_string(mesh.vertex_count)};
     }
-    return {};
   }
+  return {};
+}
+
+Status validate(const MeshView& mesh) {
+  if (Status status = validate_shape(mesh); !status.ok()) return status;
+  if (mesh.indices == nullptr) return {};
   for (std::uint32_t t = 0; t < mesh.triangle_count; ++t) {
     for (std::uint32_t corner = 0; corner < 3; ++corner) {
       const std::uint32_t index = mesh.vertex_index(t, corner);

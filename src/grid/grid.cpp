@@ -26,6 +26,11 @@ Grid::Grid(const Box3& bounds, AxisSchedule schedule, int depth)
     for (std::uint32_t k = 0; k < spread_[a].size(); ++k) {
       spread_[a][k] |= (k >> bit[a] & 1u) << (depth_ - 1 - level);
     }
+    const int code_bit = depth_ - 1 - level;
+    auto& gather = gather_[a][static_cast<std::size_t>(code_bit / 8)];
+    for (std::uint32_t byte = 0; byte < 256; ++byte) {
+      if (byte >> (code_bit % 8) & 1u) gather[byte] |= static_cast<std::uint16_t>(1u << bit[a]);
+    }
     ++bit[a];
   }
 }
@@ -39,19 +44,10 @@ CellBox Grid::cells_of(const std::array<Vec3, 3>& triangle) const {
   return box;
 }
 
-Cell Grid::cell_of(std::uint32_t code) const {
-  Cell cell{};
-  for (int level = 0; level < depth_; ++level) {
-    const auto a = static_cast<std::size_t>(axis_of_level(level));
-    cell[a] = cell[a] << 1 | (code >> (depth_ - 1 - level) & 1u);
-  }
-  return cell;
-}
-
 Grid::Split Grid::split_below(std::uint32_t upper_code, int m) const {
   // The upper half begins at the cell whose code has the bits of upper_code down to m, then zeros.
   const auto a = static_cast<std::size_t>(axis_of_level(depth_ - 1 - m));
-  const std::uint32_t k = cell_of(upper_code >> m << m)[a];
+  const std::uint32_t k = coordinate_of(upper_code >> m << m, a);
   return {static_cast<std::uint32_t>(a), plane(a, k)};
 }
 
@@ -128,8 +124,8 @@ Result<int> choose_depth(const ReferenceCounts& counts, std::uint32_t triangle_c
     depth = std::min(settings.depth, counts.levels);
   } else if (triangle_count > 0) {
     const int log2 = std::bit_width(triangle_count - 1);  // ceil(log2 N)
-    const int most =
-        std::min({std::max(log2 + settings.extra_depth, 0), counts.levels, kMaxAutoDepth});
+    const int extra = std::clamp(settings.extra_depth, -kMaxDepth, kMaxDepth);
+    const int most = std::min({std::max(log2 + extra, 0), counts.levels, kMaxAutoDepth});
     const double limit = settings.max_growth * triangle_count;
     while (depth < most && static_cast<double>(references(depth + 1)) <= limit) ++depth;
   }

@@ -56,7 +56,15 @@ class Grid {
     return spread_[0][cell[0]] | spread_[1][cell[1]] | spread_[2][cell[2]];
   }
 
-  Cell cell_of(std::uint32_t code) const;
+  /// The cell with a Morton code, and its coordinate on one axis.
+  Cell cell_of(std::uint32_t code) const {
+    return {coordinate_of(code, 0), coordinate_of(code, 1), coordinate_of(code, 2)};
+  }
+  std::uint32_t coordinate_of(std::uint32_t code, std::size_t axis) const {
+    const auto& gather = gather_[axis];
+    return static_cast<std::uint32_t>(gather[0][code & 255] | gather[1][code >> 8 & 255] |
+                                      gather[2][code >> 16 & 255] | gather[3][code >> 24]);
+  }
 
   /// The plane below cell k of an axis, 1 <= k < 2^bits.
   float plane(std::size_t axis, std::uint32_t k) const { return planes_[axis][k]; }
@@ -79,6 +87,8 @@ class Grid {
   std::array<std::uint8_t, 3> bits_;
   std::array<AxisQuantiser, 3> quantisers_;
   std::array<std::vector<std::uint32_t>, 3> spread_;  // cell coordinate to its bits of the code
+  // Each byte of a code to its bits of an axis' coordinate.
+  std::array<std::array<std::array<std::uint16_t, 256>, 4>, 3> gather_{};
   std::array<std::vector<float>, 3> planes_;
 };
 

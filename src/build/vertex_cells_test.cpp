@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "build/vertex_cells.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "reference/scene_bound.h"
+#include "tests/support/meshes.h"
+
+namespace fasttree::build {
+namespace {
+
+std::vector<test::OwnedMesh> meshes() {
+  std::vector<test::OwnedMesh> list;
+  for (const std::uint32_t n : {1u, 2u, 5u, 6u, 11u, 3000u}) list.push_back(test::soup(n, n, 0.3f));
+  for (test::NamedMesh& named : test::degenerate_meshes()) {
+    if (named.mesh.view().triangle_count > 0) list.push_back(std::move(named.mesh));
+  }
+  return list;
+}
+
+TEST(VertexCells, ScalarAndWidestAgreeWithTheDefinition) {
+  for (const test::OwnedMesh& owned : meshes()) {
+    const MeshView mesh = owned.view();
+    const Box3 expected = reference::scene_bound(mesh).value();
+    const AxisLevels levels = make_axis_levels(expected, AxisSchedule::longest);
+    const std::array<AxisQuantiser, 3> quantisers{make_axis_quantiser(expected, levels, 0),
+                                                  make_axis_quantiser(expected, levels, 1),
+                                                  make_axis_quantiser(expected, levels, 2)};
+    for (const Simd simd : {Simd::scalar, Simd::widest}) {
+      Box3 bounds;
+      ASSERT_TRUE(vertex_bounds(mesh, simd, bounds));
+      EXPECT_EQ(bounds, expected);
+      for (std::size_t a = 0; a < 3; ++a) {
+        EXPECT_FALSE(bounds.lo[a] == 0 && std::signbit(bounds.lo[a]));
+        EXPECT_FALSE(bounds.hi[a] == 0 && std::signbit(bounds.hi[a]));
+      }
+      std::vector<VertexCell> cells;
+      quantise_vertices(mesh, bounds, quantisers, simd, cells);
+      ASSERT_EQ(cells.size(), mesh.vertex_count);
+      std::uint16_t touches = 0;
+      for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+        const Vec3 p = mesh.position(v);
+        for (std::size_t a = 0; a < 3; ++a) {
+          ASSERT_EQ(cells[v].q[a], quantisers[a](p[a]));
+          ASSERT_EQ(cells[v].touches >> a & 1, p[a] == bounds.lo[a]);
+          ASSERT_EQ(cells[v].touches >> (a + 3) & 1, p[a] == bounds.hi[a]);
+        }
+        touches = static_cast<std::uint16_t>(touches | cells[v].touches);
+      }
+      EXPECT_EQ(touches, kTouchesAll);
+    }
+  }
+}
+
+TEST(VertexCells, ReadAnyStrideAndAlignment) {
+  const test::OwnedMesh owned = test::soup(700, 3, 0.2f);
+  const MeshView mesh = owned.view();
+  const Box3 bounds = reference::scene_bound(mesh).value();
+  const AxisLevels levels = make_axis_levels(bounds, AxisSchedule::cyclic);
+  const std::array<AxisQuantiser, 3> quantisers{make_axis_quantiser(bounds, levels, 0),
+                                                make_axis_quantiser(bounds, levels, 1),
+                                                make_axis_quantiser(bounds, levels, 2)};
+  std::vector<VertexCell> expected, cells;
+  quantise_vertices(mesh, bounds, quantisers, Simd::scalar, expected);
+  for (const std::size_t stride : {12u, 13u, 16u, 32u}) {
+    for (const std::size_t offset : {0u, 1u, 4u}) {
+      std::vector<unsigned char> bytes(offset + stride * mesh.vertex_count);
+      for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+        const Vec3 p = mesh.position(v);
+        std::memcpy(&bytes[offset + stride * v], &p, sizeof p);
+      }
+      MeshView strided = mesh;
+      strided.positions = bytes.data() + offset;
+      strided.position_stride_bytes = stride;
+      Box3 box;
+      ASSERT_TRUE(vertex_bounds(strided, Simd::widest, box));
+      EXPECT_EQ(box, bounds);
+      quantise_vertices(strided, bounds, quantisers, Simd::widest, cells);
+      EXPECT_EQ(cells, expected);
+    }
+  }
+}
+
+TEST(VertexCells, NoticeWhatIsNotFiniteInEveryPlace) {
+  for (const float bad : {NAN, INFINITY, -INFINITY}) {
+    for (std::uint32_t v = 0; v < 75; ++v) {
+      test::OwnedMesh owned = test::soup(25, 1, 0.1f);
+      owned.positions[v][v % 3] = bad;
+      for (const Simd simd : {Simd::scalar, Simd::widest}) {
+        Box3 bounds;
+        EXPECT_FALSE(vertex_bounds(owned.view(), simd, bounds)) << v;
+      }
+    }
+  }
+}
+
+TEST(VertexCells, NameTheInstructionSet) {
+  EXPECT_STRNE(widest_simd_name(), "");
+}
+
+}  // namespace
+}  // namespace fasttree::build
