@@ -33,11 +33,10 @@ Status check_memory(std::uint64_t planned, std::uint64_t limit, const std::strin
                                           ". Raise the limit or ask for a smaller depth."};
 }
 
-// The levels whose M(D) the depth rule will ask for.
-int levels_to_count(const AxisLevels& schedule, const MeshView& mesh,
-                    const BuildSettings& settings) {
+// The deepest D that the depth rule can choose.
+int deepest(const AxisLevels& schedule, std::uint32_t triangles, const BuildSettings& settings) {
   if (settings.depth != kAutoDepth) return std::clamp(settings.depth, 0, schedule.levels);
-  const int log2 = std::bit_width(std::max(mesh.triangle_count, 1u) - 1);
+  const int log2 = std::bit_width(std::max(triangles, 1u) - 1);
   return std::clamp(log2 + std::clamp(settings.extra_depth, -kMaxDepth, kMaxDepth), 0,
                     std::min(schedule.levels, kMaxAutoDepth));
 }
@@ -46,19 +45,42 @@ int levels_to_count(const AxisLevels& schedule, const MeshView& mesh,
 struct Gridded {
   Box3 bounds;
   AxisLevels schedule;
-  ReferenceCounts counts;
+  int depth = 0;                 // the deepest that may be chosen, then the one that is
+  std::uint64_t references = 0;  // M(depth)
+  std::uint64_t records = 0;     // M(bits of a bucket)
 };
 
-void grid_triangles(const MeshView& mesh, const BuildSettings& settings, Workspace& w, Gridded& g,
-                    BoxPass& pass) {
+BoxPass grid_triangles(const MeshView& mesh, const BuildSettings& settings, Workspace& w,
+                       Gridded& g) {
   g.schedule = make_axis_levels(g.bounds, settings.axes);
   const std::array<AxisQuantiser, 3> quantisers{make_axis_quantiser(g.bounds, g.schedule, 0),
                                                 make_axis_quantiser(g.bounds, g.schedule, 1),
                                                 make_axis_quantiser(g.bounds, g.schedule, 2)};
   quantise_vertices(mesh, g.bounds, quantisers, settings.simd, w.vertices);
-  pass = box_triangles(mesh, w.vertices, g.schedule, levels_to_count(g.schedule, mesh, settings),
-                       settings.simd, w.boxes);
-  g.counts = pass.counts;
+  g.depth = deepest(g.schedule, mesh.triangle_count, settings);
+  const BoxPass pass = box_triangles(mesh, w.vertices, g.schedule,
+                                     {g.depth, BucketGrid::bucket_bits_of(g.depth)}, w.boxes);
+  g.references = pass.references[0];
+  g.records = pass.references[1];
+  return pass;
+}
+
+// The depth rule. M grows with D, so where the deepest D keeps the rule no other has to be counted.
+Status settle_depth(std::uint32_t triangles, const BuildSettings& settings, const Workspace& w,
+                    Gridded& g) {
+  ReferenceCounts counts;
+  counts.levels = g.depth;
+  counts.at[static_cast<std::size_t>(g.depth)] = g.references;
+  Result<int> depth = choose_depth(counts, triangles, settings);
+  if (depth.ok() && depth.value() == g.depth) return {};
+  if (!depth.ok() && depth.status().code() == StatusCode::invalid_argument) return depth.status();
+  counts = count_references(w.boxes, g.schedule);
+  depth = choose_depth(counts, triangles, settings);
+  if (!depth.ok()) return depth.status();
+  g.depth = depth.value();
+  g.references = counts.at[static_cast<std::size_t>(g.depth)];
+  g.records = counts.at[static_cast<std::size_t>(BucketGrid::bucket_bits_of(g.depth))];
+  return {};
 }
 
 // The bounds by going over the triangles: for a mesh some of whose vertices no triangle uses, and
@@ -87,7 +109,6 @@ Status morton_build(const MeshView& whole_mesh, const BuildSettings& settings, W
   Status failure;
   Gridded g;
   Grid grid;
-  std::uint64_t references = 0;
 
   clock.stage("scene_bound", 0.0, 0.1, [&] {
     // Those of all vertices; whether triangles use the outermost ones is seen with their boxes.
@@ -98,40 +119,32 @@ Status morton_build(const MeshView& whole_mesh, const BuildSettings& settings, W
   if (!failure.ok()) return failure;
 
   clock.stage("grid", 0.1, 0.4, [&] {
-    BoxPass pass;
-    grid_triangles(mesh, settings, w, g, pass);
+    const BoxPass pass = grid_triangles(mesh, settings, w, g);
     if (!pass.indices_ok || (pass.touches != kTouchesAll && mesh.triangle_count != 0)) {
       failure = bounds_of_triangles(mesh, g.bounds);
       if (!failure.ok()) return;
-      grid_triangles(mesh, settings, w, g, pass);
+      grid_triangles(mesh, settings, w, g);
     }
-    const Result<int> depth = choose_depth(g.counts, mesh.triangle_count, settings);
-    failure = depth.status();
-    if (!depth.ok()) return;
-    references = g.counts.at[static_cast<std::size_t>(depth.value())];
-    const int bucket_bits = BucketGrid::bucket_bits_of(depth.value());
-    stats.planned_bytes =
-        mesh_bytes(mesh) +
-        tree_bytes(references, g.counts.at[static_cast<std::size_t>(bucket_bits)], depth.value());
+    failure = settle_depth(mesh.triangle_count, settings, w, g);
+    if (!failure.ok()) return;
+    stats.planned_bytes = mesh_bytes(mesh) + tree_bytes(g.references, g.records, g.depth);
     failure = check_memory(stats.planned_bytes, settings.memory_limit_bytes,
-                           "building at depth " + std::to_string(depth.value()) + " with " +
-                               std::to_string(references) + " references");
-    if (failure.ok()) grid = Grid(g.bounds, settings.axes, depth.value());
+                           "building at depth " + std::to_string(g.depth) + " with " +
+                               std::to_string(g.references) + " references");
+    if (failure.ok()) grid = Grid(g.bounds, settings.axes, g.depth);
   });
   if (!failure.ok()) return failure;
 
   const BucketGrid bucket_grid(grid);
-  clock.stage("morton_code", 0.4, 0.65, [&] {
-    partition(w.boxes, bucket_grid,
-              g.counts.at[static_cast<std::size_t>(bucket_grid.bucket_bits())], w.buckets);
-  });
+  clock.stage("morton_code", 0.4, 0.65,
+              [&] { partition(w.boxes, bucket_grid, g.records, w.buckets); });
   // Sorting a bucket finds its leaves too: leaf_node has no pass of its own.
   clock.stage("radix_sort", 0.65, 0.9, [&] {
-    tree.ids.resize(references);
+    tree.ids.resize(g.references);
     sort_buckets(bucket_grid, w.buckets, tree.ids);
   });
   clock.stage("internal_node", 0.9, 1.0, [&] {
-    if (references == 0) {
+    if (g.references == 0) {
       tree.nodes.assign(1, Node::leaf(0, 0));
     } else {
       emit_tree(bucket_grid, w.buckets, grid, w.first_node_of_bucket, tree.nodes);
@@ -141,7 +154,7 @@ Status morton_build(const MeshView& whole_mesh, const BuildSettings& settings, W
 
   tree.info = grid.tree_info(mesh.triangle_count);
   stats.triangles = mesh.triangle_count;
-  stats.references = references;
+  stats.references = g.references;
   return {};
 }
 

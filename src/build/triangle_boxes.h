@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Step 2, fast, first half: the cells of each triangle's box, and M(D) for every depth.
+// Step 2, fast, first half: the cells of each triangle's box, and M(D).
 #pragma once
 
 #include <array>
@@ -19,16 +19,20 @@ struct TriangleBox {
   std::array<std::uint16_t, 4> hi{};
 };
 
-/// What one pass over the triangles finds out.
+/// What the pass over the triangles finds out.
 struct BoxPass {
-  ReferenceCounts counts;     ///< M(D) for D up to the asked number of levels
+  std::array<std::uint64_t, 2> references{};  ///< M of the two depths that were asked for
   bool indices_ok = true;     ///< false: some index names no vertex; the rest is void
   std::uint16_t touches = 0;  ///< VertexCell::touches over all vertices that triangles use
 };
 
-/// Boxes of all triangles from their vertices' cells, in parallel. `boxes` is resized.
+/// Boxes of all triangles from their vertices' cells, in parallel, and M at two depths of the
+/// schedule. `boxes` is resized.
 BoxPass box_triangles(const MeshView& mesh, std::span<const VertexCell> cells,
-                      const AxisLevels& schedule, int levels, Simd simd,
+                      const AxisLevels& schedule, std::array<int, 2> depths,
                       std::vector<TriangleBox>& boxes);
+
+/// M(D) for D = 0..levels of the schedule, in parallel.
+ReferenceCounts count_references(std::span<const TriangleBox> boxes, const AxisLevels& schedule);
 
 }  // namespace fasttree::build

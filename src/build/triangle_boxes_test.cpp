@@ -22,25 +22,21 @@ TEST(TriangleBoxes, EqualTheGridsCellsAndCounts) {
                                                     make_axis_quantiser(bounds, schedule, 2)};
       std::vector<VertexCell> cells;
       quantise_vertices(mesh, bounds, quantisers, Simd::scalar, cells);
-      const ReferenceCounts expected = count_references(mesh, bounds, axes);
-      for (const Simd simd : {Simd::scalar, Simd::widest}) {
-        for (const int levels : {0, 7, schedule.levels}) {
-          std::vector<TriangleBox> boxes;
-          const BoxPass pass = box_triangles(mesh, cells, schedule, levels, simd, boxes);
-          ASSERT_TRUE(pass.indices_ok);
-          EXPECT_EQ(pass.touches, kTouchesAll);
-          EXPECT_EQ(pass.counts.levels, levels);
-          for (int d = 0; d <= levels; ++d) {
-            ASSERT_EQ(pass.counts.at[static_cast<std::size_t>(d)],
-                      expected.at[static_cast<std::size_t>(d)]);
-          }
-          for (std::uint32_t t = 0; t < mesh.triangle_count; ++t) {
-            const CellBox box = finest_cells_of(quantisers, mesh.triangle(t));
-            for (std::size_t a = 0; a < 3; ++a) {
-              ASSERT_EQ(boxes[t].lo[a], box.lo[a]);
-              ASSERT_EQ(boxes[t].hi[a], box.hi[a]);
-            }
-          }
+      const ReferenceCounts expected = fasttree::count_references(mesh, bounds, axes);
+      std::vector<TriangleBox> boxes;
+      for (const int depth : {0, 7, 21, schedule.levels}) {
+        const BoxPass pass = box_triangles(mesh, cells, schedule, {depth, depth / 2}, boxes);
+        ASSERT_TRUE(pass.indices_ok);
+        EXPECT_EQ(pass.touches, kTouchesAll);
+        EXPECT_EQ(pass.references[0], expected.at[static_cast<std::size_t>(depth)]);
+        EXPECT_EQ(pass.references[1], expected.at[static_cast<std::size_t>(depth / 2)]);
+      }
+      EXPECT_EQ(count_references(boxes, schedule).at, expected.at);
+      for (std::uint32_t t = 0; t < mesh.triangle_count; ++t) {
+        const CellBox box = finest_cells_of(quantisers, mesh.triangle(t));
+        for (std::size_t a = 0; a < 3; ++a) {
+          ASSERT_EQ(boxes[t].lo[a], box.lo[a]);
+          ASSERT_EQ(boxes[t].hi[a], box.hi[a]);
         }
       }
     }
@@ -53,9 +49,9 @@ TEST(TriangleBoxes, NoticeABadIndexAndVerticesNobodyUses) {
   const AxisLevels schedule = make_axis_levels(bounds, AxisSchedule::cyclic);
   std::vector<VertexCell> cells(owned.positions.size());
   std::vector<TriangleBox> boxes;
-  EXPECT_EQ(box_triangles(owned.view(), cells, schedule, 5, Simd::widest, boxes).touches, 0);
+  EXPECT_EQ(box_triangles(owned.view(), cells, schedule, {5, 1}, boxes).touches, 0);
   owned.indices[701] = static_cast<std::uint32_t>(owned.positions.size());
-  EXPECT_FALSE(box_triangles(owned.view(), cells, schedule, 5, Simd::widest, boxes).indices_ok);
+  EXPECT_FALSE(box_triangles(owned.view(), cells, schedule, {5, 1}, boxes).indices_ok);
 }
 
 }  // namespace
