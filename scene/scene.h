@@ -16,10 +16,10 @@ namespace fasttree::scene {
 
 /// A loaded mesh. Owns its memory, or views positions inside a mapped file.
 struct Mesh {
-  std::string name;                      ///< for people: the file's stem, or the procedural name
-  std::vector<Vec3> positions;           ///< empty where the positions lie in the mapping
-  std::vector<std::uint32_t> indices;    ///< three a triangle
-  std::shared_ptr<const void> mapping;   ///< keeps the file mapped
+  std::string name;                     ///< for people: the file's stem, or the procedural name
+  std::vector<Vec3> positions;          ///< empty where the positions lie in the mapping
+  std::vector<std::uint32_t> indices;   ///< three a triangle
+  std::shared_ptr<const void> mapping;  ///< keeps the file mapped
   const void* mapped_positions = nullptr;
   std::size_t mapped_stride_bytes = 0;
   std::uint32_t mapped_vertex_count = 0;
