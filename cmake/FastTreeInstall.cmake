@@ -5,8 +5,6 @@
 # needs nothing else to be built.
 include(CMakePackageConfigHelpers)
 
-option(FASTTREE_INSTALL "Install the library" ${PROJECT_IS_TOP_LEVEL})
-
 set_target_properties(fasttree PROPERTIES
   VERSION ${PROJECT_VERSION}
   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})  # before 1.0 a minor may break

@@ -157,7 +157,7 @@ static void test_build(ft_builder* builder, const ft_mesh* mesh) {
 static void test_bad_arguments(ft_builder* builder, const ft_mesh* mesh) {
   struct {
     ft_build_settings settings;
-    uint32_t later;
+    uint64_t later; /* leaves no padding, whose bytes would be anything */
   } grown = {FT_BUILD_SETTINGS_INIT, 0};
   ft_build_settings settings = FT_BUILD_SETTINGS_INIT;
   const ft_build_settings defaults = FT_BUILD_SETTINGS_INIT;
