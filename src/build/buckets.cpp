@@ -170,8 +170,9 @@ void sort_buckets(const BucketGrid& grid, Buckets& buckets, std::span<std::uint3
     if (records.empty()) return;
     Buckets::CellCounters& counters = buckets.counters.local();
     if (counters.count.size() < cells) {
-      counters.count.resize(cells, 0);
+      // In this order: where memory for the second fails, the next build asks for both again.
       counters.occupied.resize((cells + 63) / 64, 0);
+      counters.count.resize(cells, 0);
     }
     std::uint32_t* const count = counters.count.data();
     std::uint64_t* const occupied = counters.occupied.data();
