@@ -27,7 +27,8 @@ std::uint64_t most_of_memory() {
 }
 
 const Choices<Profile>& profiles() {
-  static const Choices<Profile> choices = {{to_string(Profile::paper), Profile::paper},
+  static const Choices<Profile> choices = {{to_string(Profile::realtime), Profile::realtime},
+                                           {to_string(Profile::paper), Profile::paper},
                                            {to_string(Profile::sah_exact), Profile::sah_exact},
                                            {to_string(Profile::sah_binned), Profile::sah_binned}};
   return choices;

@@ -66,7 +66,8 @@ typedef struct ft_mesh {
 typedef enum ft_profile {
   FT_PROFILE_PAPER = 0,     /* grid, Morton codes, path compression: the six steps of FastTree */
   FT_PROFILE_SAH_EXACT = 1, /* exact surface-area heuristic with perfect splits */
-  FT_PROFILE_SAH_BINNED = 2 /* binned surface-area heuristic */
+  FT_PROFILE_SAH_BINNED = 2, /* binned surface-area heuristic */
+  FT_PROFILE_REALTIME = 3   /* least time for build plus trace */
 } ft_profile;
 
 typedef enum ft_axis_schedule {

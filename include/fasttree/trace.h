@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,12 @@ struct Hit {
   friend bool operator==(const Hit&, const Hit&) = default;
 };
 
+/// What is known of the rays of a batch. It changes the time they take, never their results.
+enum class RayOrder : std::uint8_t {
+  incoherent = 0,  ///< anything: each ray goes its own way
+  coherent = 1,    ///< neighbours in the batch start and go nearly alike, as the rays of 8 x 8 pixels
+};
+
 /// What tracing cost, for quality figures and heat maps.
 struct TraceCounters {
   std::uint64_t inner_steps = 0;
@@ -45,13 +52,29 @@ struct TraceCounters {
   std::uint64_t triangle_tests = 0;
 };
 
-/// Traces rays through one tree over one mesh. Holds views: tree and mesh have to outlive it.
-/// Thread-safe.
+/// Traces rays through one tree over one mesh. Holds views: tree and mesh have to outlive it, and
+/// must not change before the next update(). Thread-safe but for update(). Movable, not copyable.
 class Tracer {
  public:
   /// invalid_argument where the tree was not made for a mesh of this many triangles. A tree from
   /// an untrusted file has to pass verify() first.
   static Result<Tracer> create(const Tree& tree, const MeshView& mesh);
+
+  /// A tracer of the empty tree: every ray misses.
+  Tracer();
+  ~Tracer();
+  Tracer(Tracer&&) noexcept;
+  Tracer& operator=(Tracer&&) noexcept;
+
+  /// The same as create() in this tracer's memory: for scenes that are rebuilt every frame. Runs on
+  /// the threads of the calling task arena. After an error the tracer is that of the empty tree.
+  Status update(const Tree& tree, const MeshView& mesh);
+
+  /// Milliseconds of the last create() or update(): part of what a frame's build takes.
+  double layout_ms() const;
+
+  /// Bytes of the tracer's own data.
+  std::uint64_t layout_bytes() const;
 
   Hit closest(const Ray& ray) const;
   Hit closest(const Ray& ray, TraceCounters& counters) const;
@@ -60,17 +83,16 @@ class Tracer {
   bool occluded(const Ray& ray) const;
   bool occluded(const Ray& ray, TraceCounters& counters) const;
 
-  /// Many rays, on the threads of the calling task arena. Spans of equal length.
-  void closest(std::span<const Ray> rays, std::span<Hit> hits) const;
-  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> flags) const;
+  /// Many rays, on the threads of the calling task arena. Spans of equal length. Coherent batches
+  /// are traced in packets of 64 neighbours, so put rays of 8 x 8 pixels one after the other.
+  void closest(std::span<const Ray> rays, std::span<Hit> hits,
+               RayOrder order = RayOrder::incoherent) const;
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> flags,
+                RayOrder order = RayOrder::incoherent) const;
 
  private:
-  Tracer(const Tree& tree, const MeshView& mesh);
-
-  std::span<const Node> nodes_;
-  std::span<const std::uint32_t> ids_;
-  Box3 bounds_;
-  MeshView mesh_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 /// Every triangle tested with the same routine: the judge of every tracer.

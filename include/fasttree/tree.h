@@ -26,9 +26,11 @@ enum class Profile : std::uint8_t {
   paper = 0,       ///< the six steps of the FastTree paper: grid, Morton codes, path compression
   sah_exact = 1,   ///< exact surface-area heuristic with perfect splits (Wald and Havran 2006)
   sah_binned = 2,  ///< binned surface-area heuristic (Shevtsov et al. 2007)
+  realtime = 3,    ///< least time for build plus trace: a coarse grid, gridded again where crowded
 };
+inline constexpr Profile kLastProfile = Profile::realtime;
 
-/// "cyclic", "longest"; "paper", "sah-exact", "sah-binned".
+/// "cyclic", "longest"; "paper", "sah-exact", "sah-binned", "realtime".
 const char* to_string(AxisSchedule axes);
 const char* to_string(Profile profile);
 
@@ -48,7 +50,7 @@ struct Node {
   static Node inner(std::uint32_t axis, float split, std::uint32_t upper) {
     return {upper << 2 | axis, std::bit_cast<std::uint32_t>(split)};
   }
-  static Node leaf(std::uint32_t first, std::uint32_t count) { return {count << 2 | kLeaf, first}; }
+  static constexpr Node leaf(std::uint32_t first, std::uint32_t count) { return {count << 2 | kLeaf, first}; }
 
   bool is_leaf() const { return (word0 & 3) == kLeaf; }
   std::uint32_t axis() const { return word0 & 3; }

@@ -27,6 +27,21 @@ struct Builder::Impl {
     return {};
   }
 
+  // A coarse grid.
+  Status build_realtime(const MeshView& mesh, const BuildSettings& settings, Tree& tree) {
+    BuildSettings coarse = settings;
+    coarse.axes = AxisSchedule::longest;
+    coarse.extra_depth = -2;
+    if (Status status = build_fast(mesh, coarse, tree); !status.ok()) return status;
+    TreeInfo info = tree.info();
+    info.profile = Profile::realtime;
+    info.depth = 0;
+    info.bits = {};
+    tree.release(arrays.nodes, arrays.ids);
+    tree = Tree(info, std::move(arrays.nodes), std::move(arrays.ids));
+    return {};
+  }
+
   Status build_reference(const MeshView& mesh, const BuildSettings& settings, Tree& tree) {
     Result<reference::ReferenceBuild> built = reference::build(mesh, settings, stats);
     if (!built.ok()) return built.status();
@@ -68,6 +83,8 @@ struct Builder::Impl {
         return settings.implementation == Implementation::reference
                    ? build_reference(mesh, settings, tree)
                    : build_fast(mesh, settings, tree);
+      case Profile::realtime:
+        return build_realtime(mesh, settings, tree);
       case Profile::sah_exact:
       case Profile::sah_binned:
         return build_baseline(mesh, settings, tree);

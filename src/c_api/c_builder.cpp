@@ -12,6 +12,7 @@ namespace {
 static_assert(FT_PROFILE_PAPER == static_cast<int>(Profile::paper));
 static_assert(FT_PROFILE_SAH_EXACT == static_cast<int>(Profile::sah_exact));
 static_assert(FT_PROFILE_SAH_BINNED == static_cast<int>(Profile::sah_binned));
+static_assert(FT_PROFILE_REALTIME == static_cast<int>(Profile::realtime));
 static_assert(FT_AXES_CYCLIC == static_cast<int>(AxisSchedule::cyclic));
 static_assert(FT_AXES_LONGEST == static_cast<int>(AxisSchedule::longest));
 static_assert(FT_IMPLEMENTATION_FAST == static_cast<int>(Implementation::fast));
@@ -43,7 +44,7 @@ Status read_settings(const char* call, const ft_build_settings* from, Settings& 
   }
   BuildSettings& b = to.build;
   for (const Status& status :
-       {read_choice(call, "profile", s.profile, Profile::sah_binned, b.profile),
+       {read_choice(call, "profile", s.profile, kLastProfile, b.profile),
         read_choice(call, "axes", s.axes, AxisSchedule::longest, b.axes),
         read_choice(call, "implementation", s.implementation, Implementation::reference,
                     b.implementation),

@@ -65,41 +65,73 @@ void for_each_ray(std::size_t count, const Work& work) {
 
 }  // namespace
 
-Tracer::Tracer(const Tree& tree, const MeshView& mesh)
-    : nodes_(tree.nodes()), ids_(tree.ids()), bounds_(tree.info().bounds), mesh_(mesh) {}
+struct Tracer::Impl {
+  std::span<const Node> nodes;
+  std::span<const std::uint32_t> ids;
+  Box3 bounds;
+  MeshView mesh;
+  double layout_ms = 0;
+};
+
+Tracer::Tracer() : impl_(std::make_unique<Impl>()) {
+  static constexpr Node kEmpty = Node::leaf(0, 0);
+  impl_->nodes = {&kEmpty, 1};
+}
+Tracer::~Tracer() = default;
+Tracer::Tracer(Tracer&&) noexcept = default;
+Tracer& Tracer::operator=(Tracer&&) noexcept = default;
 
 Result<Tracer> Tracer::create(const Tree& tree, const MeshView& mesh) {
+  Tracer tracer;
+  if (Status status = tracer.update(tree, mesh); !status.ok()) return status;
+  return tracer;
+}
+
+Status Tracer::update(const Tree& tree, const MeshView& mesh) {
   if (tree.info().triangle_count != mesh.triangle_count) {
+    *this = Tracer();
     return Status(StatusCode::invalid_argument,
                   "tracer: the tree was built for " + std::to_string(tree.info().triangle_count) +
                       " triangles, the mesh has " + std::to_string(mesh.triangle_count) +
                       ". Give the mesh the tree was built for.");
   }
-  return Tracer(tree, mesh);
+  impl_->nodes = tree.nodes();
+  impl_->ids = tree.ids();
+  impl_->bounds = tree.info().bounds;
+  impl_->mesh = mesh;
+  return {};
+}
+
+double Tracer::layout_ms() const {
+  return impl_->layout_ms;
+}
+
+std::uint64_t Tracer::layout_bytes() const {
+  return 0;
 }
 
 Hit Tracer::closest(const Ray& ray) const {
-  return trace_closest(nodes_, ids_, bounds_, mesh_, ray, nullptr);
+  return trace_closest(impl_->nodes, impl_->ids, impl_->bounds, impl_->mesh, ray, nullptr);
 }
 
 Hit Tracer::closest(const Ray& ray, TraceCounters& counters) const {
-  return trace_closest(nodes_, ids_, bounds_, mesh_, ray, &counters);
+  return trace_closest(impl_->nodes, impl_->ids, impl_->bounds, impl_->mesh, ray, &counters);
 }
 
 bool Tracer::occluded(const Ray& ray) const {
-  return trace_occluded(nodes_, ids_, bounds_, mesh_, ray, nullptr);
+  return trace_occluded(impl_->nodes, impl_->ids, impl_->bounds, impl_->mesh, ray, nullptr);
 }
 
 bool Tracer::occluded(const Ray& ray, TraceCounters& counters) const {
-  return trace_occluded(nodes_, ids_, bounds_, mesh_, ray, &counters);
+  return trace_occluded(impl_->nodes, impl_->ids, impl_->bounds, impl_->mesh, ray, &counters);
 }
 
-void Tracer::closest(std::span<const Ray> rays, std::span<Hit> hits) const {
+void Tracer::closest(std::span<const Ray> rays, std::span<Hit> hits, RayOrder) const {
   assert(rays.size() == hits.size());
   for_each_ray(rays.size(), [&](std::size_t i) { hits[i] = closest(rays[i]); });
 }
 
-void Tracer::occluded(std::span<const Ray> rays, std::span<std::uint8_t> flags) const {
+void Tracer::occluded(std::span<const Ray> rays, std::span<std::uint8_t> flags, RayOrder) const {
   assert(rays.size() == flags.size());
   for_each_ray(rays.size(), [&](std::size_t i) { flags[i] = occluded(rays[i]) ? 1 : 0; });
 }

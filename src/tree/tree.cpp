@@ -22,6 +22,8 @@ const char* to_string(Profile profile) {
       return "paper";
     case Profile::sah_exact:
       return "sah-exact";
+    case Profile::realtime:
+      return "realtime";
     case Profile::sah_binned:
       return "sah-binned";
   }

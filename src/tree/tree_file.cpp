@@ -194,7 +194,7 @@ Status check_content(const std::string& path, const Header& header, const Tree& 
                               hash_string(header.checksum) + "; build the tree again");
   }
   // What a sound file can still get wrong is what its writer put into it.
-  if (header.profile > static_cast<std::uint8_t>(Profile::sah_binned) ||
+  if (header.profile > static_cast<std::uint8_t>(kLastProfile) ||
       header.axes > static_cast<std::uint8_t>(AxisSchedule::longest)) {
     return bad_file(path, "profile " + std::to_string(header.profile) + " or axis schedule " +
                               std::to_string(header.axes) + " is not known to this library");

@@ -53,7 +53,7 @@ class TreeChecker {
   bool check_info() {
     const auto profile = static_cast<unsigned>(info_.profile);
     const auto axes = static_cast<unsigned>(info_.axes);
-    return report_.holds(profile <= static_cast<unsigned>(Profile::sah_binned), "profile", [&] {
+    return report_.holds(profile <= static_cast<unsigned>(kLastProfile), "profile", [&] {
       return text("profile ", profile, " is not known");
     }) && report_.holds(axes <= static_cast<unsigned>(AxisSchedule::longest), "axis-schedule", [&] {
       return text("axis schedule ", axes, " is not known");
