@@ -45,16 +45,13 @@ inline ShearedRay shear(const Ray& ray) {
   return s;
 }
 
-/// Tests one triangle. Where it is hit with t_min <= t <= t_max, sets t, u and v (weights of the
-/// second and third vertex) and returns true. Two-sided; triangles of zero area are never hit.
-inline bool intersect_triangle(const ShearedRay& s, float t_min, float t_max,
-                               const std::array<Vec3, 3>& triangle, float& t, float& u, float& v) {
-  const Vec3 a = triangle[0] - s.origin;
-  const Vec3 b = triangle[1] - s.origin;
-  const Vec3 c = triangle[2] - s.origin;
-  const double ax = a[s.kx] - s.sx * a[s.kz], ay = a[s.ky] - s.sy * a[s.kz];
-  const double bx = b[s.kx] - s.sx * b[s.kz], by = b[s.ky] - s.sy * b[s.kz];
-  const double cx = c[s.kx] - s.sx * c[s.kz], cy = c[s.ky] - s.sy * c[s.kz];
+/// Tests one triangle whose corners are given relative to the ray's origin, with the ray's axes
+/// (kx, ky, kz) in the places of x, y and z. Else as intersect_triangle().
+inline bool intersect_moved(const ShearedRay& s, float t_min, float t_max, Vec3 a, Vec3 b, Vec3 c,
+                            float& t, float& u, float& v) {
+  const double ax = a.x - s.sx * a.z, ay = a.y - s.sy * a.z;
+  const double bx = b.x - s.sx * b.z, by = b.y - s.sy * b.z;
+  const double cx = c.x - s.sx * c.z, cy = c.y - s.sy * c.z;
   const double edge_u = cx * by - cy * bx;
   const double edge_v = ax * cy - ay * cx;
   const double edge_w = bx * ay - by * ax;
@@ -63,14 +60,25 @@ inline bool intersect_triangle(const ShearedRay& s, float t_min, float t_max,
   }
   const double det = edge_u + edge_v + edge_w;
   if (det == 0) return false;
-  const double depth =
-      edge_u * (s.sz * a[s.kz]) + edge_v * (s.sz * b[s.kz]) + edge_w * (s.sz * c[s.kz]);
+  const double depth = edge_u * (s.sz * a.z) + edge_v * (s.sz * b.z) + edge_w * (s.sz * c.z);
   const float hit_t = static_cast<float>(depth / det);
   if (!(hit_t >= t_min && hit_t <= t_max) || !std::isfinite(hit_t)) return false;
   t = hit_t;
   u = static_cast<float>(edge_v / det);
   v = static_cast<float>(edge_w / det);
   return true;
+}
+
+/// Tests one triangle. Where it is hit with t_min <= t <= t_max, sets t, u and v (weights of the
+/// second and third vertex) and returns true. Two-sided; triangles of zero area are never hit.
+inline bool intersect_triangle(const ShearedRay& s, float t_min, float t_max,
+                               const std::array<Vec3, 3>& triangle, float& t, float& u, float& v) {
+  const auto moved = [&](const Vec3& p) {
+    const Vec3 q = p - s.origin;
+    return Vec3{q[s.kx], q[s.ky], q[s.kz]};
+  };
+  return intersect_moved(s, t_min, t_max, moved(triangle[0]), moved(triangle[1]),
+                         moved(triangle[2]), t, u, v);
 }
 
 }  // namespace fasttree

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <cassert>
+#include <chrono>
+#include <new>
 #include <string>
 
 #include "fasttree/trace.h"
 #include "geometry/triangle_intersection.h"
 #include "trace/traversal.h"
+#include "trace/wide_layout.h"
+#include "trace/wide_trace.h"
 
 namespace fasttree {
 namespace {
 
-constexpr std::size_t kRaysPerTask = 256;
+constexpr std::size_t kRaysPerTask = 1024;
 
 // Nearest t wins; equal t: the lowest id. Because every candidate is compared so, the order in
 // which triangles are tested does not matter.
@@ -55,12 +58,14 @@ bool trace_occluded(std::span<const Node> nodes, std::span<const std::uint32_t> 
   return found;
 }
 
+// Whole packets to a task.
 template <typename Work>
-void for_each_ray(std::size_t count, const Work& work) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kRaysPerTask),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t i = range.begin(); i < range.end(); ++i) work(i);
-                    });
+void for_each_part(std::size_t count, const Work& work) {
+  const std::size_t parts = (count + kRaysPerTask - 1) / kRaysPerTask;
+  tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
+    const std::size_t begin = part * kRaysPerTask;
+    work(begin, std::min(kRaysPerTask, count - begin));
+  });
 }
 
 }  // namespace
@@ -70,12 +75,33 @@ struct Tracer::Impl {
   std::span<const std::uint32_t> ids;
   Box3 bounds;
   MeshView mesh;
+  WideLayout layout;
+  WideScratch scratch;
   double layout_ms = 0;
+
+  // A part of a batch through the wide layout by `trace`; the few rays it leaves go through the
+  // kd-tree itself.
+  void closest(std::span<const Ray> rays, std::span<Hit> hits, TraceCounters* counters,
+               void (*trace)(const WideScene&, const WideBatch&)) const {
+    std::vector<std::uint32_t> wild;
+    trace({&layout, bounds}, {rays, hits, {}, counters, &wild});
+    for (const std::uint32_t i : wild) {
+      hits[i] = trace_closest(nodes, ids, bounds, mesh, rays[i], counters);
+    }
+  }
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> flags, TraceCounters* counters,
+                void (*trace)(const WideScene&, const WideBatch&)) const {
+    std::vector<std::uint32_t> wild;
+    trace({&layout, bounds}, {rays, {}, flags, counters, &wild});
+    for (const std::uint32_t i : wild) {
+      flags[i] = trace_occluded(nodes, ids, bounds, mesh, rays[i], counters) ? 1 : 0;
+    }
+  }
 };
 
 Tracer::Tracer() : impl_(std::make_unique<Impl>()) {
-  static constexpr Node kEmpty = Node::leaf(0, 0);
-  impl_->nodes = {&kEmpty, 1};
+  static const Tree kEmpty;
+  (void)update(kEmpty, {});
 }
 Tracer::~Tracer() = default;
 Tracer::Tracer(Tracer&&) noexcept = default;
@@ -95,10 +121,21 @@ Status Tracer::update(const Tree& tree, const MeshView& mesh) {
                       " triangles, the mesh has " + std::to_string(mesh.triangle_count) +
                       ". Give the mesh the tree was built for.");
   }
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    make_wide_layout(tree, mesh, impl_->layout, impl_->scratch);
+  } catch (const std::bad_alloc&) {
+    *this = Tracer();
+    return Status(StatusCode::resource_limit,
+                  "tracer: out of memory for " + std::to_string(tree.ids().size()) +
+                      " references. Build a tree with a smaller depth or split the mesh.");
+  }
   impl_->nodes = tree.nodes();
   impl_->ids = tree.ids();
   impl_->bounds = tree.info().bounds;
   impl_->mesh = mesh;
+  const auto stop = std::chrono::steady_clock::now();
+  impl_->layout_ms = std::chrono::duration<double, std::milli>(stop - start).count();
   return {};
 }
 
@@ -107,33 +144,48 @@ double Tracer::layout_ms() const {
 }
 
 std::uint64_t Tracer::layout_bytes() const {
-  return 0;
+  return impl_->layout.bytes();
 }
 
 Hit Tracer::closest(const Ray& ray) const {
-  return trace_closest(impl_->nodes, impl_->ids, impl_->bounds, impl_->mesh, ray, nullptr);
+  Hit hit;
+  impl_->closest({&ray, 1}, {&hit, 1}, nullptr, wide_closest);
+  return hit;
 }
 
 Hit Tracer::closest(const Ray& ray, TraceCounters& counters) const {
-  return trace_closest(impl_->nodes, impl_->ids, impl_->bounds, impl_->mesh, ray, &counters);
+  Hit hit;
+  impl_->closest({&ray, 1}, {&hit, 1}, &counters, wide_closest);
+  return hit;
 }
 
 bool Tracer::occluded(const Ray& ray) const {
-  return trace_occluded(impl_->nodes, impl_->ids, impl_->bounds, impl_->mesh, ray, nullptr);
+  std::uint8_t flag = 0;
+  impl_->occluded({&ray, 1}, {&flag, 1}, nullptr, wide_occluded);
+  return flag != 0;
 }
 
 bool Tracer::occluded(const Ray& ray, TraceCounters& counters) const {
-  return trace_occluded(impl_->nodes, impl_->ids, impl_->bounds, impl_->mesh, ray, &counters);
+  std::uint8_t flag = 0;
+  impl_->occluded({&ray, 1}, {&flag, 1}, &counters, wide_occluded);
+  return flag != 0;
 }
 
-void Tracer::closest(std::span<const Ray> rays, std::span<Hit> hits, RayOrder) const {
+void Tracer::closest(std::span<const Ray> rays, std::span<Hit> hits, RayOrder order) const {
   assert(rays.size() == hits.size());
-  for_each_ray(rays.size(), [&](std::size_t i) { hits[i] = closest(rays[i]); });
+  const auto trace = order == RayOrder::coherent ? packet_closest : wide_closest;
+  for_each_part(rays.size(), [&](std::size_t begin, std::size_t n) {
+    impl_->closest(rays.subspan(begin, n), hits.subspan(begin, n), nullptr, trace);
+  });
 }
 
-void Tracer::occluded(std::span<const Ray> rays, std::span<std::uint8_t> flags, RayOrder) const {
+void Tracer::occluded(std::span<const Ray> rays, std::span<std::uint8_t> flags,
+                      RayOrder order) const {
   assert(rays.size() == flags.size());
-  for_each_ray(rays.size(), [&](std::size_t i) { flags[i] = occluded(rays[i]) ? 1 : 0; });
+  const auto trace = order == RayOrder::coherent ? packet_occluded : wide_occluded;
+  for_each_part(rays.size(), [&](std::size_t begin, std::size_t n) {
+    impl_->occluded(rays.subspan(begin, n), flags.subspan(begin, n), nullptr, trace);
+  });
 }
 
 Hit brute_force_closest(const MeshView& mesh, const Ray& ray) {

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// An array whose elements are not touched before they are written, and whose memory is kept.
+#pragma once
+
+#include <cstddef>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+namespace fasttree {
+
+/// Aligned to 64 bytes. Growing loses the content. For types without constructors only.
+template <typename T>
+class RawArray {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  RawArray() = default;
+  RawArray(RawArray&& other) noexcept { swap(other); }
+  RawArray& operator=(RawArray&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~RawArray() { release(data_); }
+
+  /// The content is void afterwards.
+  void resize_and_forget(std::size_t size) {
+    if (size > capacity_) {
+      // A little more, so that a scene that grows slowly does not allocate in every frame.
+      const std::size_t capacity = size + size / 8;
+      T* const fresh = static_cast<T*>(::operator new(capacity * sizeof(T), std::align_val_t{64}));
+      release(data_);
+      data_ = fresh;
+      capacity_ = capacity;
+    }
+    size_ = size;
+  }
+
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+  std::size_t size() const { return size_; }
+  T& operator[](std::size_t i) { return data_[i]; }
+  const T& operator[](std::size_t i) const { return data_[i]; }
+
+ private:
+  static void release(T* data) { ::operator delete(data, std::align_val_t{64}); }
+  void swap(RawArray& other) {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
+  }
+
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+  std::size_t capacity_ = 0;
+};
+
+}  // namespace fasttree
