@@ -5,6 +5,7 @@
 
 #include "baseline/baseline.h"
 #include "build/morton_build.h"
+#include "build/realtime_build.h"
 #include "fasttree/build.h"
 #include "fasttree/device_image.h"
 #include "reference/reference_build.h"
@@ -27,18 +28,11 @@ struct Builder::Impl {
     return {};
   }
 
-  // A coarse grid.
   Status build_realtime(const MeshView& mesh, const BuildSettings& settings, Tree& tree) {
-    BuildSettings coarse = settings;
-    coarse.axes = AxisSchedule::longest;
-    coarse.extra_depth = -2;
-    if (Status status = build_fast(mesh, coarse, tree); !status.ok()) return status;
-    TreeInfo info = tree.info();
-    info.profile = Profile::realtime;
-    info.depth = 0;
-    info.bits = {};
     tree.release(arrays.nodes, arrays.ids);
-    tree = Tree(info, std::move(arrays.nodes), std::move(arrays.ids));
+    Status status = build::realtime_build(mesh, settings, workspace, arrays, stats);
+    if (!status.ok()) return status;
+    tree = Tree(arrays.info, std::move(arrays.nodes), std::move(arrays.ids));
     return {};
   }
 

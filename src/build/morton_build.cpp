@@ -8,7 +8,6 @@
 #include "build/node_emission.h"
 #include "geometry/mesh_checks.h"
 #include "reference/scene_bound.h"
-#include "support/stage_clock.h"
 
 namespace fasttree::build {
 namespace {
@@ -94,8 +93,10 @@ Status bounds_of_triangles(const MeshView& mesh, Box3& bounds) {
 
 }  // namespace
 
-Status morton_build(const MeshView& whole_mesh, const BuildSettings& settings, Workspace& w,
-                    TreeArrays& tree, BuildStats& stats) {
+Status sort_into_leaves(const MeshView& whole_mesh, const BuildSettings& settings,
+                        std::uint64_t more_bytes_per_reference, double share, StageClock& clock,
+                        Workspace& w, std::vector<std::uint32_t>& ids, BuildStats& stats,
+                        SortedLeaves& sorted) {
   if (Status status = validate_shape(whole_mesh); !status.ok()) return status;
   MeshView mesh = whole_mesh;
   if (mesh.triangle_count == 0) mesh.vertex_count = 0;  // nobody has looked at its vertices
@@ -105,12 +106,11 @@ Status morton_build(const MeshView& whole_mesh, const BuildSettings& settings, W
       !status.ok()) {
     return status;
   }
-  StageClock clock(settings.progress, stats.stages);
   Status failure;
   Gridded g;
-  Grid grid;
+  Grid& grid = sorted.grid;
 
-  clock.stage("scene_bound", 0.0, 0.1, [&] {
+  clock.stage("scene_bound", 0.0, 0.1 * share, [&] {
     // Those of all vertices; whether triangles use the outermost ones is seen with their boxes.
     if (mesh.triangle_count == 0 || !vertex_bounds(mesh, settings.simd, g.bounds)) {
       failure = bounds_of_triangles(mesh, g.bounds);
@@ -118,7 +118,7 @@ Status morton_build(const MeshView& whole_mesh, const BuildSettings& settings, W
   });
   if (!failure.ok()) return failure;
 
-  clock.stage("grid", 0.1, 0.4, [&] {
+  clock.stage("grid", 0.1 * share, 0.45 * share, [&] {
     const BoxPass pass = grid_triangles(mesh, settings, w, g);
     if (!pass.indices_ok || (pass.touches != kTouchesAll && mesh.triangle_count != 0)) {
       failure = bounds_of_triangles(mesh, g.bounds);
@@ -127,7 +127,8 @@ Status morton_build(const MeshView& whole_mesh, const BuildSettings& settings, W
     }
     failure = settle_depth(mesh.triangle_count, settings, w, g);
     if (!failure.ok()) return;
-    stats.planned_bytes = mesh_bytes(mesh) + tree_bytes(g.references, g.records, g.depth);
+    stats.planned_bytes = mesh_bytes(mesh) + tree_bytes(g.references, g.records, g.depth) +
+                          more_bytes_per_reference * g.references;
     failure = check_memory(stats.planned_bytes, settings.memory_limit_bytes,
                            "building at depth " + std::to_string(g.depth) + " with " +
                                std::to_string(g.references) + " references");
@@ -136,25 +137,40 @@ Status morton_build(const MeshView& whole_mesh, const BuildSettings& settings, W
   if (!failure.ok()) return failure;
 
   const BucketGrid bucket_grid(grid);
-  clock.stage("morton_code", 0.4, 0.65,
+  clock.stage("morton_code", 0.45 * share, 0.7 * share,
               [&] { partition(w.boxes, bucket_grid, g.records, w.buckets); });
   // Sorting a bucket finds its leaves too: leaf_node has no pass of its own.
-  clock.stage("radix_sort", 0.65, 0.9, [&] {
-    tree.ids.resize(g.references);
-    sort_buckets(bucket_grid, w.buckets, tree.ids);
+  clock.stage("radix_sort", 0.7 * share, share, [&] {
+    ids.resize(g.references);
+    sort_buckets(bucket_grid, w.buckets, ids);
   });
+  if (clock.cancelled()) return clock.cancelled_status();
+  sorted.references = g.references;
+  return {};
+}
+
+Status morton_build(const MeshView& mesh, const BuildSettings& settings, Workspace& w,
+                    TreeArrays& tree, BuildStats& stats) {
+  StageClock clock(settings.progress, stats.stages);
+  SortedLeaves sorted;
+  if (Status status =
+          sort_into_leaves(mesh, settings, 0, 0.9, clock, w, tree.ids, stats, sorted);
+      !status.ok()) {
+    return status;
+  }
   clock.stage("internal_node", 0.9, 1.0, [&] {
-    if (g.references == 0) {
+    if (sorted.references == 0) {
       tree.nodes.assign(1, Node::leaf(0, 0));
     } else {
-      emit_tree(bucket_grid, w.buckets, grid, w.first_node_of_bucket, tree.nodes);
+      emit_tree(BucketGrid(sorted.grid), w.buckets, sorted.grid, w.first_node_of_bucket,
+                tree.nodes);
     }
   });
   if (clock.cancelled()) return clock.cancelled_status();
 
-  tree.info = grid.tree_info(mesh.triangle_count);
+  tree.info = sorted.grid.tree_info(mesh.triangle_count);
   stats.triangles = mesh.triangle_count;
-  stats.references = g.references;
+  stats.references = sorted.references;
   return {};
 }
 

@@ -7,11 +7,14 @@
 #include <vector>
 
 #include "build/buckets.h"
+#include "build/layers.h"
 #include "build/triangle_boxes.h"
 #include "build/vertex_cells.h"
 #include "fasttree/build.h"
 #include "fasttree/mesh.h"
 #include "fasttree/tree.h"
+#include "grid/grid.h"
+#include "support/stage_clock.h"
 
 namespace fasttree::build {
 
@@ -21,6 +24,8 @@ struct Workspace {
   std::vector<TriangleBox> boxes;
   Buckets buckets;
   std::vector<std::uint32_t> first_node_of_bucket;
+  std::vector<std::uint32_t> top_ids;  ///< profile realtime: of the top grid
+  Layers layers;
 };
 
 /// The arrays of a tree in the making.
@@ -29,6 +34,19 @@ struct TreeArrays {
   std::vector<Node> nodes;
   std::vector<std::uint32_t> ids;
 };
+
+/// What the grid's cells hold, sorted; the cells themselves are in the workspace's buckets.
+struct SortedLeaves {
+  Grid grid;
+  std::uint64_t references = 0;
+};
+
+/// Steps 1 to 4, which take a `share` of the whole build's progress. `more_bytes_per_reference` is
+/// what the caller is going to take beside. Errors as Builder::build.
+Status sort_into_leaves(const MeshView& mesh, const BuildSettings& settings,
+                        std::uint64_t more_bytes_per_reference, double share, StageClock& clock,
+                        Workspace& workspace, std::vector<std::uint32_t>& ids, BuildStats& stats,
+                        SortedLeaves& sorted);
 
 /// Builds into `tree`, whose arrays' memory is reused. Errors as Builder::build.
 Status morton_build(const MeshView& mesh, const BuildSettings& settings, Workspace& workspace,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "grid/quantiser.h"
 
+#include <algorithm>
 #include <bit>
 #include <limits>
 
@@ -35,6 +36,36 @@ float find_plane(const AxisQuantiser& quantiser, float hi, std::uint32_t k) {
     } else {
       below = middle;
     }
+  }
+  return from_ordinal(static_cast<std::int32_t>(above));
+}
+
+float find_plane_near(const AxisQuantiser& quantiser, float hi, std::uint32_t k) {
+  const std::int64_t least = to_ordinal(quantiser.lo);
+  const std::int64_t most = to_ordinal(hi);
+  const auto reached = [&](std::int64_t i) {
+    return quantiser(from_ordinal(static_cast<std::int32_t>(i))) >= k;
+  };
+  const float guess = quantiser.lo + static_cast<float>(k) / quantiser.scale;
+  std::int64_t below = std::clamp<std::int64_t>(to_ordinal(guess), least, most);
+  std::int64_t above = below;
+  // Steps that double: near zero, floats are much denser than the differences from `lo`.
+  if (reached(below)) {
+    for (std::int64_t step = 1; below > least; step *= 2) {
+      below = std::max(above - step, least);
+      if (!reached(below)) break;
+      above = below;
+    }
+  } else {
+    for (std::int64_t step = 1; above < most; step *= 2) {
+      above = std::min(below + step, most);
+      if (reached(above)) break;
+      below = above;
+    }
+  }
+  while (above - below > 1) {
+    const std::int64_t middle = below + (above - below) / 2;
+    (reached(middle) ? above : below) = middle;
   }
   return from_ordinal(static_cast<std::int32_t>(above));
 }

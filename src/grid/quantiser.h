@@ -35,6 +35,9 @@ AxisQuantiser make_axis_quantiser(const Box3& bounds, const AxisLevels& levels, 
 /// q15(v) >= k. Plus zero rather than minus zero. `hi` is the upper bound of the axis.
 float find_plane(const AxisQuantiser& quantiser, float hi, std::uint32_t k);
 
+/// The same, faster: from lo + k / scale, which is a few units in the last place away mostly.
+float find_plane_near(const AxisQuantiser& quantiser, float hi, std::uint32_t k);
+
 /// Planes of an axis with `bits` bits: element k (1 <= k < 2^bits) is the plane below cell k.
 /// Element 0 is the lower bound.
 std::vector<float> make_planes(const AxisQuantiser& quantiser, float hi, int bits);

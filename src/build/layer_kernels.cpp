@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled once for every instruction set by Highway's foreach_target; the plain C++ forms and the
+// choice between them stand at the end.
+#include "build/layer_kernels.h"
+
+#include <algorithm>
+
+#include "grid/cell_overlap.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "build/layer_kernels.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target, as Highway asks.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace fasttree::build {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F = hn::ScalableTag<float>;
+using I = hn::RebindToSigned<F>;
+using VF = hn::Vec<F>;
+using VI = hn::Vec<I>;
+
+// Counters of a lane hold what this many triangles can add.
+constexpr std::size_t kTrianglesPerSum = std::size_t{1} << 20;
+
+Box3 BoundsOf(const LayerTriangles& triangles) {
+  const F d;
+  Box3 box;
+  for (std::size_t a = 0; a < 3; ++a) {
+    auto lo = hn::LoadU(d, triangles.coordinate[a].data()), hi = lo;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float* const v = triangles.coordinate[3 * c + a].data();
+      for (std::size_t i = 0; i < triangles.size; i += hn::Lanes(d)) {
+        const auto x = hn::LoadU(d, v + i);
+        lo = hn::Min(lo, x);
+        hi = hn::Max(hi, x);
+      }
+    }
+    box.lo[a] = hn::GetLane(hn::MinOfLanes(d, lo));
+    box.hi[a] = hn::GetLane(hn::MaxOfLanes(d, hi));
+  }
+  return box;
+}
+
+// The sum over triangles of f(first of a vector's triangles).
+template <typename CountOf>
+std::uint64_t SumOf(std::size_t count, const CountOf& f) {
+  const I di;
+  const std::size_t lanes = hn::Lanes(di);
+  std::uint64_t all = 0;
+  for (std::size_t begin = 0; begin < count; begin += kTrianglesPerSum) {
+    const std::size_t end = std::min(count, begin + kTrianglesPerSum);
+    auto sum = hn::Zero(di);
+    for (std::size_t i = begin; i < end; i += lanes) {
+      const auto n = f(i);
+      sum = hn::Add(sum, end - i >= lanes
+                             ? n
+                             : hn::IfThenElseZero(hn::FirstN(di, end - i), n));
+    }
+    HWY_ALIGN std::int32_t lane[hn::MaxLanes(I())];
+    hn::Store(sum, di, lane);
+    for (std::size_t l = 0; l < lanes; ++l) all += static_cast<std::uint32_t>(lane[l]);
+  }
+  return all;
+}
+
+std::uint64_t QuantiseLayer(const LayerTriangles& triangles, const LocalGrid& grid,
+                            LayerCells& cells) {
+  const F d;
+  const I di;
+  const auto last = hn::Set(d, static_cast<float>(kFinestCells - 1));
+  return SumOf(triangles.size, [&](std::size_t i) {
+    auto count = hn::Set(di, 1);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const AxisQuantiser& quantiser = grid.quantiser(a);
+      const auto origin = hn::Set(d, quantiser.lo);
+      const auto scale = hn::Set(d, quantiser.scale);
+      const auto v0 = hn::LoadU(d, triangles.coordinate[a].data() + i);
+      const auto v1 = hn::LoadU(d, triangles.coordinate[3 + a].data() + i);
+      const auto v2 = hn::LoadU(d, triangles.coordinate[6 + a].data() + i);
+      // The quantiser is monotone: the corners of the box are those of its bounds.
+      const auto q = [&](VF v) {
+        const auto x = hn::Mul(hn::Sub(v, origin), scale);
+        return hn::ShiftRightSame(hn::ConvertTo(di, hn::Min(hn::Max(x, hn::Zero(d)), last)),
+                                  kMaxAxisBits - grid.bits(a));
+      };
+      const auto lo = q(hn::Min(hn::Min(v0, v1), v2));
+      const auto hi = q(hn::Max(hn::Max(v0, v1), v2));
+      hn::StoreU(lo, di, cells.lo[a].data() + i);
+      hn::StoreU(hi, di, cells.hi[a].data() + i);
+      count = hn::Mul(count, hn::Add(hn::Sub(hi, lo), hn::Set(di, 1)));
+    }
+    return count;
+  });
+}
+
+std::uint64_t CoarsenLayer(std::size_t count, std::size_t axis, LayerCells& cells) {
+  const I di;
+  return SumOf(count, [&](std::size_t i) {
+    auto n = hn::Set(di, 1);
+    for (std::size_t a = 0; a < 3; ++a) {
+      auto lo = hn::LoadU(di, cells.lo[a].data() + i);
+      auto hi = hn::LoadU(di, cells.hi[a].data() + i);
+      if (a == axis) {
+        lo = hn::ShiftRight<1>(lo);
+        hi = hn::ShiftRight<1>(hi);
+        hn::StoreU(lo, di, cells.lo[a].data() + i);
+        hn::StoreU(hi, di, cells.hi[a].data() + i);
+      }
+      n = hn::Mul(n, hn::Add(hn::Sub(hi, lo), hn::Set(di, 1)));
+    }
+    return n;
+  });
+}
+
+// CellOverlap for a vector of triangles and the two by two by two cells from their lowest: bit x +
+// 2 y + 4 z of the result is the cell at that offset.
+VI OverlapMask(const VF (&corner)[3][3], const VF (&origin)[3]) {
+  const F d;
+  const I di;
+  const auto zero = hn::Zero(d);
+  auto largest = zero;
+  VF p[3][3];
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      largest = hn::Max(largest, hn::Abs(corner[c][a]));
+      p[c][a] = hn::Sub(corner[c][a], origin[a]);
+    }
+  }
+  largest = hn::Add(largest, hn::Set(d, 1.0f));
+  const auto untested = hn::Not(hn::Le(largest, hn::Set(d, kOverlapLargest)));
+  const auto slack = hn::Mul(largest, hn::Set(d, kOverlapSlack));
+  const auto least = hn::Set(d, kOverlapLeast);
+  // Bits of the cells with each offset on two axes, u + 2 v, and w any.
+  const auto outside_of = [&](std::size_t w, std::size_t u, std::size_t v) {
+    const int step[3] = {1, 2, 4};
+    int bits = 0;
+    for (int at = 0; at < 2; ++at) {
+      bits |= 1 << (at * step[w] + static_cast<int>(u) * step[(w + 1) % 3] +
+                    static_cast<int>(v) * step[(w + 2) % 3]);
+    }
+    return hn::Set(di, bits);
+  };
+
+  auto outside = hn::Zero(di);
+  for (std::size_t w = 0; w < 3; ++w) {
+    const std::size_t u = (w + 1) % 3, v = (w + 2) % 3;
+    auto out00 = hn::Lt(zero, zero), out10 = out00, out01 = out00, out11 = out00;
+    for (std::size_t e = 0; e < 3; ++e) {
+      const auto& from = p[e];
+      const auto& to = p[(e + 1) % 3];
+      const auto& third = p[(e + 2) % 3];
+      auto nu = hn::Sub(from[v], to[v]);
+      auto nv = hn::Sub(to[u], from[u]);
+      const auto side = hn::Add(hn::Mul(nu, hn::Sub(third[u], from[u])),
+                                hn::Mul(nv, hn::Sub(third[v], from[v])));
+      const auto sign = hn::And(side, hn::SignBit(d));
+      nu = hn::Xor(nu, sign);
+      nv = hn::Xor(nv, sign);
+      const auto reach =
+          hn::Add(hn::Add(hn::Max(nu, zero), hn::Max(nv, zero)),
+                  hn::Add(hn::Mul(hn::Add(hn::Abs(nu), hn::Abs(nv)), slack), least));
+      const auto base =
+          hn::Sub(reach, hn::Add(hn::Mul(nu, from[u]), hn::Mul(nv, from[v])));
+      out00 = hn::Or(out00, hn::Lt(base, zero));
+      out10 = hn::Or(out10, hn::Lt(hn::Add(nu, base), zero));
+      out01 = hn::Or(out01, hn::Lt(hn::Add(nv, base), zero));
+      out11 = hn::Or(out11, hn::Lt(hn::Add(hn::Add(nu, nv), base), zero));
+    }
+    const auto add = [&](hn::Mask<F> out, VI bits) {
+      outside = hn::Or(outside, hn::IfThenElseZero(hn::RebindMask(di, out), bits));
+    };
+    add(out00, outside_of(w, 0, 0));
+    add(out10, outside_of(w, 1, 0));
+    add(out01, outside_of(w, 0, 1));
+    add(out11, outside_of(w, 1, 1));
+  }
+
+  VF edge1[3] = {zero, zero, zero}, edge2[3] = {zero, zero, zero};
+  for (std::size_t a = 0; a < 3; ++a) {
+    edge1[a] = hn::Sub(p[1][a], p[0][a]);
+    edge2[a] = hn::Sub(p[2][a], p[0][a]);
+  }
+  VF normal[3] = {zero, zero, zero}, size[3] = {zero, zero, zero};
+  for (std::size_t w = 0; w < 3; ++w) {
+    const auto a = hn::Mul(edge1[(w + 1) % 3], edge2[(w + 2) % 3]);
+    const auto b = hn::Mul(edge1[(w + 2) % 3], edge2[(w + 1) % 3]);
+    normal[w] = hn::Sub(a, b);
+    size[w] = hn::Add(hn::Abs(a), hn::Abs(b));
+  }
+  const auto room =
+      hn::Add(hn::Mul(hn::Add(hn::Add(size[0], size[1]), size[2]), slack), least);
+  const auto at =
+      hn::Add(hn::Add(hn::Mul(normal[0], p[0][0]), hn::Mul(normal[1], p[0][1])),
+              hn::Mul(normal[2], p[0][2]));
+  const auto above = hn::Sub(
+      hn::Add(hn::Add(hn::Add(hn::Max(normal[0], zero), hn::Max(normal[1], zero)),
+                      hn::Max(normal[2], zero)),
+              room),
+      at);
+  const auto below = hn::Sub(
+      hn::Sub(hn::Add(hn::Add(hn::Min(normal[0], zero), hn::Min(normal[1], zero)),
+                      hn::Min(normal[2], zero)),
+              room),
+      at);
+  for (std::size_t cell = 0; cell < 8; ++cell) {
+    auto n = zero;
+    if (cell & 1) n = normal[0];
+    if (cell & 2) n = cell & 1 ? hn::Add(n, normal[1]) : normal[1];
+    if (cell & 4) n = cell & 3 ? hn::Add(n, normal[2]) : normal[2];
+    const auto out = hn::Or(hn::Lt(hn::Add(n, above), zero), hn::Gt(hn::Add(n, below), zero));
+    outside = hn::Or(outside,
+                     hn::IfThenElseZero(hn::RebindMask(di, out), hn::Set(di, 1 << cell)));
+  }
+  outside = hn::IfThenZeroElse(hn::RebindMask(di, untested), outside);
+  return hn::AndNot(outside, hn::Set(di, 255));
+}
+
+void MaskLayer(const LayerTriangles& triangles, const LocalGrid& grid, LayerCells& cells) {
+  const F d;
+  const I di;
+  const hn::Rebind<std::uint8_t, I> d8;
+  const hn::RebindToUnsigned<I> du;
+  const std::size_t lanes = hn::Lanes(di);
+  std::size_t tests = 0;
+  for (std::size_t i = 0; i < triangles.size; i += lanes) {
+    const auto span = [&](std::size_t a) {
+      return hn::Sub(hn::LoadU(di, cells.hi[a].data() + i), hn::LoadU(di, cells.lo[a].data() + i));
+    };
+    const auto one = hn::Set(di, 1);
+    const auto x = span(0), y = span(1), z = span(2);
+    const auto small = hn::Not(hn::Gt(hn::Max(hn::Max(x, y), z), one));
+    auto mask = hn::Add(one, hn::Add(x, x));
+    mask = hn::Add(mask, hn::IfThenElseZero(hn::Gt(y, hn::Zero(di)), hn::ShiftLeft<2>(mask)));
+    mask = hn::Add(mask, hn::IfThenElseZero(hn::Gt(z, hn::Zero(di)), hn::ShiftLeft<4>(mask)));
+    mask = hn::IfThenElseZero(small, mask);
+    hn::StoreU(hn::DemoteTo(d8, mask), d8, cells.mask.data() + i);
+    auto tested = hn::And(small, hn::Gt(hn::Add(hn::Add(x, y), z), one));
+    if (triangles.size - i < lanes) {
+      tested = hn::And(tested, hn::FirstN(di, triangles.size - i));
+    }
+    const auto index = hn::Iota(du, static_cast<std::uint32_t>(i));
+    tests += hn::CompressStore(index, hn::RebindMask(du, tested), du, cells.tests.data() + tests);
+  }
+  cells.test_count = tests;
+  if (tests == 0) return;
+  for (std::size_t l = 0; l < lanes; ++l) cells.tests[tests + l] = cells.tests[tests - 1];
+  for (std::size_t i = 0; i < tests; i += lanes) {
+    const auto index = hn::BitCast(di, hn::LoadU(du, cells.tests.data() + i));
+    VF corner[3][3], origin[3];
+    for (std::size_t a = 0; a < 3; ++a) {
+      const AxisQuantiser& quantiser = grid.quantiser(a);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto v = hn::GatherIndex(d, triangles.coordinate[3 * c + a].data(), index);
+        corner[c][a] = hn::Mul(
+            hn::Mul(hn::Sub(v, hn::Set(d, quantiser.lo)), hn::Set(d, quantiser.scale)),
+            hn::Set(d, grid.to_cells(a)));
+      }
+      origin[a] = hn::ConvertTo(d, hn::GatherIndex(di, cells.lo[a].data(), index));
+    }
+    HWY_ALIGN std::int32_t mask[hn::MaxLanes(I())];
+    hn::Store(OverlapMask(corner, origin), di, mask);
+    for (std::size_t l = 0; l < lanes && i + l < tests; ++l) {
+      std::uint8_t& m = cells.mask[cells.tests[i + l]];
+      m = static_cast<std::uint8_t>(m & mask[l]);
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace fasttree::build
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace fasttree::build {
+
+HWY_EXPORT(BoundsOf);
+HWY_EXPORT(QuantiseLayer);
+HWY_EXPORT(CoarsenLayer);
+HWY_EXPORT(MaskLayer);
+
+namespace {
+
+std::uint64_t count_boxes(std::size_t count, const LayerCells& cells) {
+  std::uint64_t all = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint32_t n = 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+      n *= static_cast<std::uint32_t>(cells.hi[a][i] - cells.lo[a][i] + 1);
+    }
+    all += n;
+  }
+  return all;
+}
+
+std::uint8_t tested_mask(const LayerTriangles& triangles, const LocalGrid& grid,
+                         const LayerCells& cells, std::size_t i) {
+  std::array<std::array<float, 3>, 3> corner;
+  Cell origin;
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      corner[c][a] = in_cells(grid, a, triangles.coordinate[3 * c + a][i]);
+    }
+    origin[a] = static_cast<std::uint32_t>(cells.lo[a][i]);
+  }
+  const CellOverlap overlap(corner, origin);
+  unsigned mask = 0;
+  for (unsigned cell = 0; cell < 8; ++cell) {
+    if (overlap.at(static_cast<float>(cell & 1), static_cast<float>(cell >> 1 & 1),
+                   static_cast<float>(cell >> 2))) {
+      mask |= 1u << cell;
+    }
+  }
+  return static_cast<std::uint8_t>(mask);
+}
+
+}  // namespace
+
+Box3 bounds_of(const LayerTriangles& triangles, Simd simd) {
+  if (simd == Simd::widest) return HWY_DYNAMIC_DISPATCH(BoundsOf)(triangles);
+  Box3 box;
+  for (std::size_t i = 0; i < triangles.size; ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      box.include({triangles.coordinate[3 * c][i], triangles.coordinate[3 * c + 1][i],
+                   triangles.coordinate[3 * c + 2][i]});
+    }
+  }
+  return box;
+}
+
+std::uint64_t quantise_layer(const LayerTriangles& triangles, const LocalGrid& grid, Simd simd,
+                             LayerCells& cells) {
+  if (simd == Simd::widest) return HWY_DYNAMIC_DISPATCH(QuantiseLayer)(triangles, grid, cells);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const AxisQuantiser& quantiser = grid.quantiser(a);
+    for (std::size_t i = 0; i < triangles.size; ++i) {
+      const std::uint32_t q0 = quantiser(triangles.coordinate[a][i]);
+      const std::uint32_t q1 = quantiser(triangles.coordinate[3 + a][i]);
+      const std::uint32_t q2 = quantiser(triangles.coordinate[6 + a][i]);
+      const int shift = kMaxAxisBits - grid.bits(a);
+      cells.lo[a][i] = static_cast<std::int32_t>(std::min({q0, q1, q2}) >> shift);
+      cells.hi[a][i] = static_cast<std::int32_t>(std::max({q0, q1, q2}) >> shift);
+    }
+  }
+  return count_boxes(triangles.size, cells);
+}
+
+std::uint64_t coarsen_layer(std::size_t count, std::size_t axis, Simd simd, LayerCells& cells) {
+  if (simd == Simd::widest) return HWY_DYNAMIC_DISPATCH(CoarsenLayer)(count, axis, cells);
+  for (std::size_t i = 0; i < count; ++i) {
+    cells.lo[axis][i] >>= 1;
+    cells.hi[axis][i] >>= 1;
+  }
+  return count_boxes(count, cells);
+}
+
+void mask_layer(const LayerTriangles& triangles, const LocalGrid& grid, Simd simd,
+                LayerCells& cells) {
+  if (simd == Simd::widest) {
+    HWY_DYNAMIC_DISPATCH(MaskLayer)(triangles, grid, cells);
+    return;
+  }
+  cells.test_count = 0;
+  for (std::size_t i = 0; i < triangles.size; ++i) {
+    const std::int32_t x = cells.hi[0][i] - cells.lo[0][i];
+    const std::int32_t y = cells.hi[1][i] - cells.lo[1][i];
+    const std::int32_t z = cells.hi[2][i] - cells.lo[2][i];
+    unsigned mask = 0;
+    if (std::max({x, y, z}) <= 1) {
+      mask = x == 1 ? 3 : 1;
+      if (y == 1) mask |= mask << 2;
+      if (z == 1) mask |= mask << 4;
+      if (x + y + z > 1) mask &= tested_mask(triangles, grid, cells, i);
+    }
+    cells.mask[i] = static_cast<std::uint8_t>(mask);
+  }
+}
+
+}  // namespace fasttree::build
+#endif  // HWY_ONCE

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "build/layers.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <string>
+
+namespace fasttree::build {
+namespace {
+
+// References of one chunk: a task of some tens of microseconds, whose output fits the second-level
+// cache.
+constexpr std::uint32_t kChunkReferences = 4096;
+
+Box3 box_of(const Grid& grid, std::uint32_t code) {
+  Box3 box = grid.bounds();
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::uint32_t k = grid.coordinate_of(code, a);
+    if (k > 0) box.lo[a] = grid.plane(a, k);
+    if (k + 1 < 1u << grid.bits()[a]) box.hi[a] = grid.plane(a, k + 1);
+  }
+  return box;
+}
+
+// The cells in order, with a last one that says where the ids end; and the chunks.
+void list_cells(const Buckets& buckets, std::size_t ids, Layers& layers) {
+  layers.cells.clear();
+  for (std::size_t b = 0; b < buckets.leaf_count.size(); ++b) {
+    const LeafStart* const leaves = buckets.leaves.data() + buckets.leaf_begin[b];
+    for (std::uint32_t l = 0; l < buckets.leaf_count[b]; ++l) {
+      Layers::TopCell cell;
+      cell.code = leaves[l].code;
+      cell.first = leaves[l].first;
+      layers.cells.push_back(cell);
+    }
+  }
+  const std::size_t count = layers.cells.size();
+  Layers::TopCell last;
+  last.first = static_cast<std::uint32_t>(ids);
+  layers.cells.push_back(last);
+
+  layers.chunk_count = 0;
+  for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
+    while (end < count &&
+           (end == begin || layers.cells[end + 1].first - layers.cells[begin].first <=
+                                kChunkReferences)) {
+      ++end;
+    }
+    if (layers.chunk_count == layers.chunks.size()) layers.chunks.emplace_back();
+    Layers::Chunk& chunk = layers.chunks[layers.chunk_count++];
+    chunk.begin = begin;
+    chunk.end = end;
+  }
+}
+
+// Nodes and ids of a cell's subtree: up to where the next of its chunk begins.
+std::uint32_t nodes_end(const Layers& layers, const Layers::Chunk& chunk, std::size_t cell) {
+  return cell + 1 < chunk.end ? layers.cells[cell + 1].node_first
+                              : static_cast<std::uint32_t>(chunk.output.nodes.size());
+}
+
+std::uint32_t ids_end(const Layers& layers, const Layers::Chunk& chunk, std::size_t cell) {
+  return cell + 1 < chunk.end ? layers.cells[cell + 1].id_first
+                              : static_cast<std::uint32_t>(chunk.output.ids.size());
+}
+
+// The nodes above the cells' subtrees, from the last to the first as in emit_nodes; and the place of
+// each subtree.
+void emit_top(const Grid& grid, Layers& layers, std::vector<Node>& nodes) {
+  struct Open {
+    int m;
+    std::uint32_t upper_code;
+    std::uint32_t upper;
+  };
+  std::array<Open, kMaxDepth> open;
+  std::size_t open_count = 0;
+  auto next = static_cast<std::uint32_t>(nodes.size());
+  const auto close = [&] {
+    const Open& node = open[--open_count];
+    const Grid::Split split = grid.split_below(node.upper_code, node.m);
+    nodes[--next] = Node::inner(split.axis, split.position, node.upper);
+  };
+  for (std::size_t c = layers.chunk_count; c-- > 0;) {
+    const Layers::Chunk& chunk = layers.chunks[c];
+    for (std::size_t j = chunk.end; j-- > chunk.begin;) {
+      Layers::TopCell& cell = layers.cells[j];
+      next -= nodes_end(layers, chunk, j) - cell.node_first;
+      cell.node_place = next;
+      if (j == 0) break;
+      const int m = std::bit_width(layers.cells[j - 1].code ^ cell.code) - 1;
+      while (open_count > 0 && open[open_count - 1].m < m) close();
+      open[open_count++] = {m, cell.code, next};
+    }
+  }
+  while (open_count > 0) close();
+}
+
+}  // namespace
+
+std::uint64_t layer_bytes_per_reference() {
+  // A list of n makes fewer than n 2^(k+1) leaves where a layer has at most ceil(log2 n) + k levels;
+  // a list that is a leaf of the top grid makes one.
+  constexpr int extra = kRealtimeRule.layer_extra_depth + 1;
+  constexpr std::uint64_t references = kRealtimeRule.whole_growth;
+  constexpr std::uint64_t leaves = extra < 0 ? (references >> -extra) + 1 : references;
+  // In the chunks' output, which grows by doubling, and in the tree.
+  return (2 + 1) * (references * sizeof(std::uint32_t) + 2 * leaves * sizeof(Node)) +
+         sizeof(Layers::TopCell);
+}
+
+void build_layers(const MeshView& mesh, const Grid& grid, const Buckets& buckets,
+                  std::span<const std::uint32_t> ids, Simd simd, Layers& layers) {
+  list_cells(buckets, ids.size(), layers);
+  tbb::parallel_for(std::size_t{0}, layers.chunk_count, [&](std::size_t c) {
+    Layers::Chunk& chunk = layers.chunks[c];
+    LayerOutput& output = chunk.output;
+    output.nodes.clear();
+    output.ids.clear();
+    LayerBuilder& builder = layers.builders.local();
+    for (std::size_t j = chunk.begin; j < chunk.end; ++j) {
+      Layers::TopCell& cell = layers.cells[j];
+      cell.node_first = static_cast<std::uint32_t>(output.nodes.size());
+      cell.id_first = static_cast<std::uint32_t>(output.ids.size());
+      builder.build(mesh, ids.subspan(cell.first, layers.cells[j + 1].first - cell.first),
+                    box_of(grid, cell.code), grid.depth(), simd, output);
+    }
+  });
+}
+
+Status assemble(const Grid& grid, Layers& layers, std::vector<Node>& nodes,
+                std::vector<std::uint32_t>& ids) {
+  const std::size_t cells = layers.cells.size() - 1;
+  std::uint64_t node_count = cells - 1, id_count = 0;
+  for (std::size_t c = 0; c < layers.chunk_count; ++c) {
+    const Layers::Chunk& chunk = layers.chunks[c];
+    for (std::size_t j = chunk.begin; j < chunk.end; ++j) {
+      layers.cells[j].id_place = static_cast<std::uint32_t>(id_count + layers.cells[j].id_first);
+    }
+    node_count += chunk.output.nodes.size();
+    id_count += chunk.output.ids.size();
+  }
+  if (node_count >= kMaxNodes) {
+    return {StatusCode::resource_limit, "build: the tree would have " + std::to_string(node_count) +
+                                            " nodes; at most " + std::to_string(kMaxNodes - 1) +
+                                            " are possible. Ask for a smaller depth."};
+  }
+  nodes.resize(node_count);
+  ids.resize(id_count);
+  emit_top(grid, layers, nodes);
+  tbb::parallel_for(std::size_t{0}, layers.chunk_count, [&](std::size_t c) {
+    const Layers::Chunk& chunk = layers.chunks[c];
+    for (std::size_t j = chunk.begin; j < chunk.end; ++j) {
+      const Layers::TopCell& cell = layers.cells[j];
+      const std::uint32_t node_shift = cell.node_place - cell.node_first;
+      const std::uint32_t id_shift = cell.id_place - cell.id_first;
+      for (std::uint32_t i = cell.node_first; i < nodes_end(layers, chunk, j); ++i) {
+        Node node = chunk.output.nodes[i];
+        if (node.is_leaf()) {
+          node.word1 += id_shift;
+        } else {
+          node.word0 += node_shift << 2;
+        }
+        nodes[i + node_shift] = node;
+      }
+      std::copy(chunk.output.ids.begin() + cell.id_first,
+                chunk.output.ids.begin() + ids_end(layers, chunk, j), ids.begin() + cell.id_place);
+    }
+  });
+  return {};
+}
+
+}  // namespace fasttree::build

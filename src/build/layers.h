@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Profile `realtime`, fast: the layers below all cells of the top grid, in parallel, and the whole
+// tree put together.
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "build/buckets.h"
+#include "build/layer_builder.h"
+#include "fasttree/build.h"
+#include "fasttree/mesh.h"
+#include "fasttree/tree.h"
+#include "grid/grid.h"
+
+namespace fasttree::build {
+
+/// Working memory kept from build to build.
+struct Layers {
+  /// A cell of the top grid that holds something.
+  struct TopCell {
+    std::uint32_t code = 0;
+    std::uint32_t first = 0;  ///< of its ids
+    // Its subtree in its chunk's output, and where the whole tree has it.
+    std::uint32_t node_first = 0;
+    std::uint32_t id_first = 0;
+    std::uint32_t node_place = 0;
+    std::uint32_t id_place = 0;
+  };
+  /// Neighbouring cells that are one task's work.
+  struct Chunk {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    LayerOutput output;
+  };
+  std::vector<TopCell> cells;
+  std::vector<Chunk> chunks;
+  std::size_t chunk_count = 0;
+  tbb::enumerable_thread_specific<LayerBuilder> builders;
+};
+
+/// Bytes that the layers and the tree may take for each reference of the top grid.
+std::uint64_t layer_bytes_per_reference();
+
+/// Makes the layers of all cells that sort_buckets has left.
+void build_layers(const MeshView& mesh, const Grid& grid, const Buckets& buckets,
+                  std::span<const std::uint32_t> ids, Simd simd, Layers& layers);
+
+/// Puts the tree together. resource_limit where it has more nodes than a tree can have.
+Status assemble(const Grid& grid, Layers& layers, std::vector<Node>& nodes,
+                std::vector<std::uint32_t>& ids);
+
+}  // namespace fasttree::build
