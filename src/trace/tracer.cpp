@@ -76,7 +76,6 @@ struct Tracer::Impl {
   Box3 bounds;
   MeshView mesh;
   WideLayout layout;
-  WideScratch scratch;
   double layout_ms = 0;
 
   // A part of a batch through the wide layout by `trace`; the few rays it leaves go through the
@@ -123,7 +122,7 @@ Status Tracer::update(const Tree& tree, const MeshView& mesh) {
   }
   const auto start = std::chrono::steady_clock::now();
   try {
-    make_wide_layout(tree, mesh, impl_->layout, impl_->scratch);
+    make_wide_layout(tree, mesh, impl_->layout);
   } catch (const std::bad_alloc&) {
     *this = Tracer();
     return Status(StatusCode::resource_limit,

@@ -4,6 +4,7 @@
 #include <tbb/task_group.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cstring>
 #include <limits>
@@ -14,127 +15,119 @@ namespace fasttree {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::uint32_t kNotWide = 0xffffffffu;
 
 // Subtrees with fewer kd nodes are not worth a task of their own.
 constexpr std::size_t kNodesPerTask = 512;
 
-// Triangles a child has where a large leaf is cut into at most 16 parts.
-std::uint32_t part_size(std::uint32_t count) {
-  std::uint64_t size = kMostInLeaf;
-  while (size * kWide < count) size *= kWide;
-  return static_cast<std::uint32_t>(size);
+// Room for the wide nodes of a tree. One with 16 leaves or more under it has 16 children, so at
+// worst 16 of 17 have two leaves; large leaves have a node a part at worst.
+std::size_t most_wide_nodes(const Tree& tree) {
+  return tree.leaf_count() * 9 / 16 + tree.ids().size() / kMostInLeaf + 2;
 }
 
-// Wide nodes over the parts of a leaf.
-std::uint32_t part_nodes(std::uint32_t count) {
-  const std::uint32_t size = part_size(count);
-  std::uint32_t nodes = 1;
-  if (size > kMostInLeaf) nodes += count / size * part_nodes(size);
-  if (count % size > kMostInLeaf) nodes += part_nodes(count % size);
-  return nodes;
-}
-
-// Which kd nodes become the roots of wide nodes: from the leaves up, a subtree is closed when it
-// and its sibling have more than 16 children together. The larger one has 9 or more then, so wide
-// nodes are more than half full. Returns the number of wide nodes; they are numbered in pre-order.
-std::uint32_t choose_wide_roots(std::span<const Node> nodes, WideScratch& scratch) {
-  std::vector<std::uint8_t>& units = scratch.units;
-  std::vector<std::uint32_t>& wide_of = scratch.wide_of;
-  units.resize(nodes.size());
-  wide_of.assign(nodes.size(), kNotWide);
-  for (std::size_t i = nodes.size(); i-- > 0;) {
-    const Node node = nodes[i];
-    if (node.is_leaf()) {
-      units[i] = 1;
-      if (node.count() > kMostInLeaf) wide_of[i] = 0;
-      continue;
-    }
-    std::uint32_t lower = static_cast<std::uint32_t>(i) + 1, upper = node.upper();
-    if (units[lower] < units[upper]) std::swap(lower, upper);
-    std::uint32_t sum = units[lower] + units[upper];
-    if (sum > kWide) {
-      wide_of[lower] = 0;
-      sum = units[upper] + 1u;
-      if (sum > kWide) {
-        wide_of[upper] = 0;
-        sum = 2;
-      }
-    }
-    units[i] = static_cast<std::uint8_t>(sum);
-  }
-  wide_of[0] = 0;
-  std::uint32_t count = 0;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (wide_of[i] == kNotWide) continue;
-    wide_of[i] = count;
-    count += nodes[i].is_leaf() ? part_nodes(nodes[i].count()) : 1;
-  }
-  return count;
+// What stands for the chance that a ray meets a box.
+float half_area(const Box3& box) {
+  const Vec3 e = box.extent();
+  return e.x * e.y + e.y * e.z + e.z * e.x;
 }
 
 class LayoutMaker {
  public:
-  LayoutMaker(const Tree& tree, const MeshView& mesh, WideLayout& layout,
-              const WideScratch& scratch)
-      : nodes_(tree.nodes()), wide_of_(scratch.wide_of), layout_(layout), fill_(mesh) {}
+  LayoutMaker(const Tree& tree, const MeshView& mesh, WideLayout& layout)
+      : nodes_(tree.nodes()), layout_(layout), fill_(mesh) {}
 
-  // Makes the wide node of the kd node `root`, whose cell is `cell`, and all under it; returns the
-  // box round them.
-  Box3 make(std::uint32_t root, const Box3& cell, int level) {
-    if (nodes_[root].is_leaf()) return make_leaf_parts(root, cell);
+  std::uint32_t nodes_used() const { return next_; }
+
+  // Makes a wide node for the kd nodes [root, end), whose cell is `cell`, and all under it; returns
+  // its index and the box round them.
+  struct Made {
+    std::uint32_t index;
+    Box3 box;
+  };
+  Made make(std::uint32_t root, std::uint32_t end, const Box3& cell) {
+    if (nodes_[root].is_leaf()) return make_parts(nodes_[root].first(), nodes_[root].count(), cell);
     Treelet treelet;
-    collect(root, cell, treelet);
-    WideNode& wide = layout_.nodes[wide_of_[root]];
+    open(root, end, cell, treelet);
+    const std::uint32_t index = next_.fetch_add(1, std::memory_order_relaxed);
+    WideNode& wide = layout_.nodes[index];
     clear(wide);
     set_order(treelet, wide);
     std::array<Box3, kWide> boxes;
-    if (level < 2 && nodes_.size() > 2 * kNodesPerTask) {
+    if (end - root > 2 * kNodesPerTask) {
       tbb::task_group tasks;
       for (std::uint32_t c = 0; c < treelet.children; ++c) {
-        tasks.run([&, c] { boxes[c] = make_child(treelet.child[c], wide, c, level); });
+        tasks.run([&, c] { boxes[c] = make_child(treelet.child[c], wide, c); });
       }
       tasks.wait();
     } else {
       for (std::uint32_t c = 0; c < treelet.children; ++c) {
-        boxes[c] = make_child(treelet.child[c], wide, c, level);
+        boxes[c] = make_child(treelet.child[c], wide, c);
       }
     }
-    return set_bounds(wide, {boxes.data(), treelet.children});
+    return {index, set_bounds(wide, {boxes.data(), treelet.children})};
   }
 
  private:
   struct Child {
-    std::uint32_t node = 0;
+    std::uint32_t node = 0;  // of the kd-tree; those under it end before `end`
+    std::uint32_t end = 0;
     Box3 cell;
+    float worth = 0;  // of being opened; a leaf has none
+    std::int32_t* link = nullptr;  // to it, in the treelet
   };
   // The kd nodes inside one wide node: inner ones by number, children as ~number.
   struct Treelet {
     struct Inner {
       std::uint32_t axis;
-      std::int32_t lower, upper;
+      std::int32_t side[2];
     };
     std::array<Inner, kWide> inner;
     std::array<Child, kWide> child;
+    std::int32_t root = ~0;
     std::uint32_t inners = 0;
-    std::uint32_t children = 0;
+    std::uint32_t children = 1;
   };
 
-  std::int32_t collect(std::uint32_t index, const Box3& cell, Treelet& treelet) {
-    const Node node = nodes_[index];
-    if (node.is_leaf() || (wide_of_[index] != kNotWide && treelet.inners > 0)) {
-      treelet.child[treelet.children] = {index, cell};
-      return ~static_cast<std::int32_t>(treelet.children++);
+  // The child whose cell a ray meets most often is replaced by its two sides, until there are 16.
+  // Subtrees that would become half-empty nodes when opened are left whole, so that they fill a
+  // node of their own.
+  void open(std::uint32_t root, std::uint32_t end, const Box3& cell, Treelet& treelet) const {
+    treelet.child[0] = {root, end, cell, 1.0f, &treelet.root};
+    while (treelet.children < kWide) {
+      std::uint32_t c = 0;
+      float most = 0;
+      const std::uint32_t room = kWide - treelet.children + 1;
+      for (std::uint32_t i = 0; i < treelet.children; ++i) {
+        const std::uint32_t leaves = (treelet.child[i].end - treelet.child[i].node + 1) / 2;
+        const bool whole = leaves <= kWide && leaves > room;
+        const float worth = treelet.child[i].worth * (whole ? 1e-3f : 1.0f);
+        if (worth > most) {
+          most = worth;
+          c = i;
+        }
+      }
+      if (most == 0) return;
+      Child& opened = treelet.child[c];
+      const Node node = nodes_[opened.node];
+      const auto m = static_cast<std::int32_t>(treelet.inners++);
+      auto& inner = treelet.inner[static_cast<std::size_t>(m)];
+      *opened.link = m;
+      const std::uint32_t k = treelet.children++;
+      inner = {node.axis(), {~static_cast<std::int32_t>(c), ~static_cast<std::int32_t>(k)}};
+      Child& upper = treelet.child[k];
+      upper = {node.upper(), opened.end, opened.cell, 0, &inner.side[1]};
+      upper.cell.lo[node.axis()] = node.split();
+      opened.end = node.upper();
+      opened.node += 1;
+      opened.cell.hi[node.axis()] = node.split();
+      opened.link = &inner.side[0];
+      for (Child* side : {&opened, &upper}) {
+        // Flat cells have no area and are opened all the same.
+        side->worth = nodes_[side->node].is_leaf()
+                          ? 0.0f
+                          : half_area(side->cell) + std::numeric_limits<float>::min();
+      }
     }
-    const std::uint32_t self = treelet.inners++;
-    Box3 part = cell;
-    part.hi[node.axis()] = node.split();
-    const std::int32_t lower = collect(index + 1, part, treelet);
-    part.hi[node.axis()] = cell.hi[node.axis()];
-    part.lo[node.axis()] = node.split();
-    const std::int32_t upper = collect(node.upper(), part, treelet);
-    treelet.inner[self] = {node.axis(), lower, upper};
-    return static_cast<std::int32_t>(self);
   }
 
   static void walk(const Treelet& treelet, std::int32_t at, std::uint32_t octant,
@@ -145,8 +138,8 @@ class LayoutMaker {
     }
     const auto& inner = treelet.inner[static_cast<std::size_t>(at)];
     const bool down = (octant >> inner.axis & 1) != 0;
-    walk(treelet, down ? inner.upper : inner.lower, octant, order, place);
-    walk(treelet, down ? inner.lower : inner.upper, octant, order, place);
+    walk(treelet, inner.side[down], octant, order, place);
+    walk(treelet, inner.side[!down], octant, order, place);
   }
 
   // The slots without a child come last; nobody sees them.
@@ -154,21 +147,22 @@ class LayoutMaker {
     for (std::uint32_t octant = 0; octant < 4; ++octant) {
       std::uint64_t order = 0;
       int place = 0;
-      walk(treelet, 0, octant, order, place);
+      walk(treelet, treelet.root, octant, order, place);
       for (std::uint64_t c = treelet.children; c < kWide; ++c) order |= c << (4 * place++);
       wide.order[octant] = order;
     }
   }
 
-  Box3 make_child(const Child& child, WideNode& wide, std::uint32_t slot, int level) {
+  Box3 make_child(const Child& child, WideNode& wide, std::uint32_t slot) {
     const Node node = nodes_[child.node];
-    if (wide_of_[child.node] != kNotWide) {
-      wide.child[slot] = wide_of_[child.node];
-      return make(child.node, child.cell, level + 1);
+    if (node.is_leaf() && node.count() <= kMostInLeaf) {
+      wide.child[slot] = node.first();
+      wide.count[slot] = static_cast<std::uint8_t>(node.count());
+      return make_leaf(node.first(), node.count(), child.cell);
     }
-    wide.child[slot] = node.first();
-    wide.count[slot] = static_cast<std::uint8_t>(node.count());
-    return make_leaf(node.first(), node.count(), child.cell);
+    const Made made = make(child.node, child.end, child.cell);
+    wide.child[slot] = made.index;
+    return made.box;
   }
 
   Box3 make_leaf(std::uint32_t first, std::uint32_t count, const Box3& cell) {
@@ -185,31 +179,29 @@ class LayoutMaker {
 
   // A leaf of the kd-tree with more triangles than a child may have, or the root of a tree that is
   // one leaf: parts of it under as many levels of nodes as they need.
-  Box3 make_leaf_parts(std::uint32_t leaf, const Box3& cell) {
-    const Node node = nodes_[leaf];
-    std::uint32_t next = wide_of_[leaf];
-    return make_parts(node.first(), node.count(), cell, next);
-  }
-
-  Box3 make_parts(std::uint32_t first, std::uint32_t count, const Box3& cell, std::uint32_t& next) {
-    WideNode& wide = layout_.nodes[next++];
+  Made make_parts(std::uint32_t first, std::uint32_t count, const Box3& cell) {
+    const std::uint32_t index = next_.fetch_add(1, std::memory_order_relaxed);
+    WideNode& wide = layout_.nodes[index];
     clear(wide);
     std::fill_n(wide.order, 4, 0xfedcba9876543210u);
-    const std::uint32_t size = part_size(count);
+    std::uint64_t size = kMostInLeaf;  // of a child
+    while (size * kWide < count) size *= kWide;
     std::array<Box3, kWide> boxes;
     std::uint32_t children = 0;
-    for (std::uint32_t done = 0; done < count; done += size, ++children) {
-      const std::uint32_t n = std::min(size, count - done);
+    for (std::uint64_t done = 0; done < count; done += size, ++children) {
+      const auto begin = static_cast<std::uint32_t>(first + done);
+      const auto n = static_cast<std::uint32_t>(std::min(size, count - done));
       if (n > kMostInLeaf) {
-        wide.child[children] = next;
-        boxes[children] = make_parts(first + done, n, cell, next);
+        const Made made = make_parts(begin, n, cell);
+        wide.child[children] = made.index;
+        boxes[children] = made.box;
       } else {
-        wide.child[children] = first + done;
+        wide.child[children] = begin;
         wide.count[children] = static_cast<std::uint8_t>(n);
-        boxes[children] = make_leaf(first + done, n, cell);
+        boxes[children] = make_leaf(begin, n, cell);
       }
     }
-    return set_bounds(wide, {boxes.data(), children});
+    return {index, set_bounds(wide, {boxes.data(), children})};
   }
 
   static void clear(WideNode& wide) {
@@ -235,21 +227,23 @@ class LayoutMaker {
   }
 
   std::span<const Node> nodes_;
-  const std::vector<std::uint32_t>& wide_of_;
   WideLayout& layout_;
+  std::atomic<std::uint32_t> next_ = 0;
   LeafTriangles fill_;
 };
 
 }  // namespace
 
-void make_wide_layout(const Tree& tree, const MeshView& mesh, WideLayout& layout,
-                      WideScratch& scratch) {
+void make_wide_layout(const Tree& tree, const MeshView& mesh, WideLayout& layout) {
   const Box3& bounds = tree.info().bounds;
   layout.centre = bounds.lo * 0.5f + bounds.hi * 0.5f;
   layout.ids = tree.ids();
-  layout.nodes.resize_and_forget(choose_wide_roots(tree.nodes(), scratch));
+  layout.nodes.resize_and_forget(most_wide_nodes(tree));
   layout.triangles.resize_and_forget(kTriangleRows * tree.ids().size() + kWide);
-  LayoutMaker(tree, mesh, layout, scratch).make(0, bounds, 0);
+  // The root comes first, as it is made before all that is under it.
+  LayoutMaker maker(tree, mesh, layout);
+  maker.make(0, static_cast<std::uint32_t>(tree.nodes().size()), bounds);
+  layout.node_count = maker.nodes_used();
 }
 
 }  // namespace fasttree

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "fasttree/mesh.h"
 #include "fasttree/tree.h"
@@ -40,7 +39,8 @@ inline constexpr std::uint32_t kTriangleRows = 9;
 
 struct WideLayout {
   Vec3 centre{};  ///< of the scene's bounds
-  RawArray<WideNode> nodes;
+  RawArray<WideNode> nodes;       ///< room for more than there are; the root is the first
+  std::uint32_t node_count = 0;
   /// Reference r of a leaf that begins at `first` with n triangles has its coordinate c at
   /// kTriangleRows * first + c * n + (r - first). Whole vectors may be read at the end.
   RawArray<float> triangles;
@@ -50,19 +50,13 @@ struct WideLayout {
     return triangles.data() + std::size_t{kTriangleRows} * first;
   }
   std::uint64_t bytes() const {
-    return nodes.size() * sizeof(WideNode) + triangles.size() * sizeof(float);
+    return node_count * sizeof(WideNode) + triangles.size() * sizeof(float);
   }
 };
 
-/// Working memory of make_wide_layout, kept from tree to tree.
-struct WideScratch {
-  std::vector<std::uint8_t> units;
-  std::vector<std::uint32_t> wide_of;
-};
-
-/// Makes the layout in the layout's memory, on the threads of the calling arena. The numbering of
-/// nodes does not depend on the number of threads. `tree` and `mesh` belong together.
-void make_wide_layout(const Tree& tree, const MeshView& mesh, WideLayout& layout,
-                      WideScratch& scratch);
+/// Makes the layout in the layout's memory, on the threads of the calling arena. `tree` and `mesh`
+/// belong together. Where nodes lie depends on which thread came first; nothing that can be seen
+/// from outside does.
+void make_wide_layout(const Tree& tree, const MeshView& mesh, WideLayout& layout);
 
 }  // namespace fasttree
