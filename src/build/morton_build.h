@@ -8,7 +8,7 @@
 
 #include "build/buckets.h"
 #include "build/triangle_boxes.h"
-#include "build/vertex_cells.h"
+#include "build/vertex_codes.h"
 #include "fasttree/build.h"
 #include "fasttree/mesh.h"
 #include "fasttree/tree.h"
@@ -17,8 +17,8 @@ namespace fasttree::build {
 
 /// Working memory kept from build to build.
 struct Workspace {
-  std::vector<VertexCell> vertices;
-  std::vector<TriangleBox> boxes;
+  Buffer<std::uint32_t> vertex_codes;
+  Buffer<CodeBox> boxes;
   Buckets buckets;
   std::vector<std::uint32_t> first_node_of_bucket;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "build/vertex_cells.h"
+#include "build/vertex_codes.h"
 
 #include <gtest/gtest.h>
 
@@ -21,14 +21,13 @@ std::vector<test::OwnedMesh> meshes() {
   return list;
 }
 
-TEST(VertexCells, ScalarAndWidestAgreeWithTheDefinition) {
+TEST(VertexCodes, ScalarAndWidestAgreeWithTheDefinition) {
   for (const test::OwnedMesh& owned : meshes()) {
     const MeshView mesh = owned.view();
     const Box3 expected = reference::scene_bound(mesh).value();
     const AxisLevels levels = make_axis_levels(expected, AxisSchedule::longest);
-    const std::array<AxisQuantiser, 3> quantisers{make_axis_quantiser(expected, levels, 0),
-                                                  make_axis_quantiser(expected, levels, 1),
-                                                  make_axis_quantiser(expected, levels, 2)};
+    const int depth = std::min(levels.levels, 26);
+    const Grid grid(expected, AxisSchedule::longest, depth);
     for (const Simd simd : {Simd::scalar, Simd::widest}) {
       Box3 bounds;
       ASSERT_TRUE(vertex_bounds(mesh, simd, bounds));
@@ -37,34 +36,33 @@ TEST(VertexCells, ScalarAndWidestAgreeWithTheDefinition) {
         EXPECT_FALSE(bounds.lo[a] == 0 && std::signbit(bounds.lo[a]));
         EXPECT_FALSE(bounds.hi[a] == 0 && std::signbit(bounds.hi[a]));
       }
-      std::vector<VertexCell> cells;
-      quantise_vertices(mesh, bounds, quantisers, simd, cells);
-      ASSERT_EQ(cells.size(), mesh.vertex_count);
-      std::uint16_t touches = 0;
+      Buffer<std::uint32_t> codes;
+      encode_vertices(mesh, VertexEncoder(bounds, levels, depth), simd, codes);
+      ASSERT_EQ(codes.size(), mesh.vertex_count);
       for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
         const Vec3 p = mesh.position(v);
+        std::uint32_t code = 0;
         for (std::size_t a = 0; a < 3; ++a) {
-          ASSERT_EQ(cells[v].q[a], quantisers[a](p[a]));
-          ASSERT_EQ(cells[v].touches >> a & 1, p[a] == bounds.lo[a]);
-          ASSERT_EQ(cells[v].touches >> (a + 3) & 1, p[a] == bounds.hi[a]);
+          Cell cell{};
+          cell[a] = grid.quantise(a, p[a]);
+          code |= grid.morton_code(cell);
+          const bool touches = p[a] == bounds.lo[a] || p[a] == bounds.hi[a];
+          if (touches && bounds.lo[a] < bounds.hi[a]) code |= kTouchesBounds;
         }
-        touches = static_cast<std::uint16_t>(touches | cells[v].touches);
+        ASSERT_EQ(codes[v], code);
       }
-      EXPECT_EQ(touches, kTouchesAll);
     }
   }
 }
 
-TEST(VertexCells, ReadAnyStrideAndAlignment) {
+TEST(VertexCodes, ReadAnyStrideAndAlignment) {
   const test::OwnedMesh owned = test::soup(700, 3, 0.2f);
   const MeshView mesh = owned.view();
   const Box3 bounds = reference::scene_bound(mesh).value();
   const AxisLevels levels = make_axis_levels(bounds, AxisSchedule::cyclic);
-  const std::array<AxisQuantiser, 3> quantisers{make_axis_quantiser(bounds, levels, 0),
-                                                make_axis_quantiser(bounds, levels, 1),
-                                                make_axis_quantiser(bounds, levels, 2)};
-  std::vector<VertexCell> expected, cells;
-  quantise_vertices(mesh, bounds, quantisers, Simd::scalar, expected);
+  const VertexEncoder encoder(bounds, levels, 22);
+  Buffer<std::uint32_t> expected, codes;
+  encode_vertices(mesh, encoder, Simd::scalar, expected);
   for (const std::size_t stride : {12u, 13u, 16u, 32u}) {
     for (const std::size_t offset : {0u, 1u, 4u}) {
       std::vector<unsigned char> bytes(offset + stride * mesh.vertex_count);
@@ -78,13 +76,13 @@ TEST(VertexCells, ReadAnyStrideAndAlignment) {
       Box3 box;
       ASSERT_TRUE(vertex_bounds(strided, Simd::widest, box));
       EXPECT_EQ(box, bounds);
-      quantise_vertices(strided, bounds, quantisers, Simd::widest, cells);
-      EXPECT_EQ(cells, expected);
+      encode_vertices(strided, encoder, Simd::widest, codes);
+      EXPECT_EQ(codes, expected);
     }
   }
 }
 
-TEST(VertexCells, NoticeWhatIsNotFiniteInEveryPlace) {
+TEST(VertexCodes, NoticeWhatIsNotFiniteInEveryPlace) {
   for (const float bad : {NAN, INFINITY, -INFINITY}) {
     for (std::uint32_t v = 0; v < 75; ++v) {
       test::OwnedMesh owned = test::soup(25, 1, 0.1f);
@@ -97,7 +95,7 @@ TEST(VertexCells, NoticeWhatIsNotFiniteInEveryPlace) {
   }
 }
 
-TEST(VertexCells, NameTheInstructionSet) {
+TEST(VertexCodes, NameTheInstructionSet) {
   EXPECT_STRNE(widest_simd_name(), "");
 }
 
