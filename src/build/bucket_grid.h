@@ -29,7 +29,7 @@ class BucketGrid {
   static int bucket_bits_of(int depth) {
     // Counters of one bucket's cells should stay in the first-level cache, and buckets should be
     // few enough for the partition's streams.
-    constexpr int kCellBits = 12;
+    constexpr int kCellBits = 14;
     constexpr int kMostBucketBits = 12;
     return depth - std::clamp(depth - kMostBucketBits, std::min(depth, kCellBits), kMostCellBits);
   }

@@ -13,10 +13,14 @@
 namespace fasttree::build {
 namespace {
 
+// Each costs the pass over the vertices the end of a vector.
+constexpr std::size_t kMostStrays = 4096;
+
 // Bytes of the workspace and the tree: what every mesh takes, and what M references take, of which
 // `records` are partitioned.
 std::uint64_t mesh_bytes(const MeshView& mesh) {
-  return mesh.vertex_count * sizeof(std::uint32_t) + mesh.triangle_count * sizeof(CodeBox);
+  return kMostStrays * sizeof(std::uint32_t) + mesh.vertex_count * sizeof(std::uint32_t) +
+         mesh.triangle_count * sizeof(CodeBox);
 }
 
 std::uint64_t tree_bytes(const MeshView& mesh, std::uint64_t references, std::uint64_t records,
@@ -81,12 +85,25 @@ Status settle_depth(std::uint32_t triangles, const BuildSettings& settings, cons
 }
 
 // The bounds by going over the triangles: for a mesh some of whose vertices no triangle uses, and
-// for saying what is wrong, and where.
-Status bounds_of_triangles(const MeshView& mesh, Box3& bounds) {
+// for saying what is wrong, and where. Meshes from scanners have such vertices; in the next frame
+// they will be the same, so they are remembered.
+Status bounds_of_triangles(const MeshView& mesh, Workspace& w, Box3& bounds) {
+  w.strays.clear();
   if (Status status = validate(mesh); !status.ok()) return status;
   const Result<Box3> result = reference::scene_bound(mesh);
-  if (result.ok()) bounds = result.value();
-  return result.status();
+  if (!result.ok()) return result.status();
+  bounds = result.value();
+  for (std::uint32_t v = 0; v < mesh.vertex_count; ++v) {
+    const Vec3 p = mesh.position(v);
+    const auto within = [&](std::size_t a) { return p[a] >= bounds.lo[a] && p[a] <= bounds.hi[a]; };
+    if (within(0) && within(1) && within(2)) continue;
+    if (w.strays.size() == kMostStrays) {
+      w.strays.clear();
+      break;
+    }
+    w.strays.push_back(v);
+  }
+  return {};
 }
 
 }  // namespace
@@ -115,17 +132,19 @@ Status morton_build(const MeshView& whole_mesh, const BuildSettings& settings, W
   };
 
   clock.stage("scene_bound", 0.0, 0.1, [&] {
-    // Those of all vertices; whether triangles use the outermost ones is seen with their boxes.
-    if (mesh.triangle_count == 0 || !vertex_bounds(mesh, settings.simd, g.bounds)) {
-      failure = bounds_of_triangles(mesh, g.bounds);
+    // A guess, from all vertices but the last mesh's strays. Whether triangles use the outermost
+    // ones and none outside is seen with their boxes.
+    if (mesh.triangle_count == 0 || !vertex_bounds(mesh, w.strays, settings.simd, g.bounds)) {
+      failure = bounds_of_triangles(mesh, w, g.bounds);
     }
   });
   if (!failure.ok()) return failure;
 
   clock.stage("grid", 0.1, 0.4, [&] {
     const BoxPass pass = grid_triangles(mesh, settings, w, g);
-    if (!pass.indices_ok || (pass.touches != kTouchesAll && mesh.triangle_count != 0)) {
-      failure = bounds_of_triangles(mesh, g.bounds);
+    const bool guess_holds = pass.indices_ok && pass.inside && pass.touches == kTouchesAll;
+    if (!guess_holds && mesh.triangle_count != 0) {
+      failure = bounds_of_triangles(mesh, w, g.bounds);
       if (!failure.ok()) return;
       grid_triangles(mesh, settings, w, g);
     }

@@ -17,6 +17,9 @@ namespace fasttree::build {
 
 /// Working memory kept from build to build.
 struct Workspace {
+  /// Vertices outside the bounds of the last mesh, which no triangle used, ascending; none where
+  /// they are too many. The next mesh is first tried without them.
+  Buffer<std::uint32_t> strays;
   Buffer<std::uint32_t> vertex_codes;
   Buffer<CodeBox> boxes;
   Buckets buckets;

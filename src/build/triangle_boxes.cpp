@@ -21,6 +21,9 @@
 #define FASTTREE_BUILD_TRIANGLE_BOXES_ONCE_
 namespace fasttree::build {
 
+/// Triangles whose corners' codes are fetched together; whole vectors of any instruction set.
+inline constexpr std::uint32_t kTrianglesPerBlock = 256;
+
 /// What one task works on.
 struct BoxTask {
   const MeshView& mesh;
@@ -62,37 +65,51 @@ std::uint32_t BoxVectors(BoxTask&, std::uint32_t first, std::uint32_t) {
 #else
 std::uint32_t BoxVectors(BoxTask& task, std::uint32_t first, std::uint32_t end) {
   const hn::ScalableTag<std::uint32_t> d;
-  const hn::RebindToSigned<decltype(d)> di;
   const hn::Repartition<std::uint64_t, decltype(d)> d64;
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
   const CodeAxes axes = task.axes;  // a copy: what `boxes` points to is not it
   const std::uint32_t* const codes = task.codes.data();
   const auto vertices = hn::Set(d, static_cast<std::uint32_t>(task.codes.size()));
-  const auto flag = hn::Set(d, kTouchesBounds);
+  const auto touch = hn::Set(d, kTouchesBounds);
+  const auto outside = hn::Set(d, kOutside);
   auto references = hn::Zero(d64);
-  for (; first + lanes <= end; first += lanes) {
-    auto v0 = hn::Zero(d), v1 = v0, v2 = v0;
-    hn::LoadInterleaved3(d, task.mesh.indices + std::size_t{3} * first, v0, v1, v2);
-    if (!hn::AllTrue(d, hn::Lt(hn::Max(v0, hn::Max(v1, v2)), vertices))) {
+  HWY_ALIGN std::uint32_t corners[3 * kTrianglesPerBlock];
+  while (first + lanes <= end) {
+    // The codes are fetched one by one into a block that stays in the cache: that many loads are
+    // under way at once, where gathers wait for one another.
+    const std::uint32_t* const indices = task.mesh.indices + std::size_t{3} * first;
+    const std::uint32_t block = std::min(kTrianglesPerBlock, (end - first) / lanes * lanes);
+    auto largest = hn::Zero(d);
+    for (std::uint32_t i = 0; i < 3 * block; i += lanes) {
+      largest = hn::Max(largest, hn::LoadU(d, indices + i));
+    }
+    if (!hn::AllTrue(d, hn::Lt(largest, vertices))) {
       task.found.indices_ok = false;
       return end;
     }
-    const auto c0 = hn::GatherIndex(d, codes, hn::BitCast(di, v0));
-    const auto c1 = hn::GatherIndex(d, codes, hn::BitCast(di, v1));
-    const auto c2 = hn::GatherIndex(d, codes, hn::BitCast(di, v2));
-    auto lo = hn::Zero(d), hi = lo;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const auto mask = hn::Set(d, axes.axis[a].mask());
-      const auto a0 = hn::And(c0, mask), a1 = hn::And(c1, mask), a2 = hn::And(c2, mask);
-      lo = hn::Or(lo, hn::Min(a0, hn::Min(a1, a2)));
-      hi = hn::Or(hi, hn::Max(a0, hn::Max(a1, a2)));
+    for (std::uint32_t i = 0; i < 3 * block; ++i) corners[i] = codes[indices[i]];
+    auto flags = hn::Zero(d);
+    for (std::uint32_t t = 0; t < block; t += lanes) {
+      auto c0 = hn::Zero(d), c1 = c0, c2 = c0;
+      hn::LoadInterleaved3(d, corners + 3 * t, c0, c1, c2);
+      auto lo = hn::Zero(d), hi = lo;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const auto mask = hn::Set(d, axes.axis[a].mask());
+        const auto a0 = hn::And(c0, mask), a1 = hn::And(c1, mask), a2 = hn::And(c2, mask);
+        lo = hn::Or(lo, hn::Min(a0, hn::Min(a1, a2)));
+        hi = hn::Or(hi, hn::Max(a0, hn::Max(a1, a2)));
+      }
+      hn::StoreInterleaved2(lo, hi, d, &task.boxes[first + t].lo);
+      references = AddWide(references, Cells(d, lo, hi, axes));
+      const auto all = hn::Or(c0, hn::Or(c1, c2));
+      flags = hn::Or(flags, all);
+      if (task.found.touches != kTouchesAll &&
+          !hn::AllFalse(d, hn::Ne(hn::And(all, touch), hn::Zero(d)))) {
+        task.look_at_touches(first + t, first + t + lanes);
+      }
     }
-    hn::StoreInterleaved2(lo, hi, d, &task.boxes[first].lo);
-    references = AddWide(references, Cells(d, lo, hi, axes));
-    if (task.found.touches != kTouchesAll &&
-        !hn::AllFalse(d, hn::Ne(hn::And(hn::Or(c0, hn::Or(c1, c2)), flag), hn::Zero(d)))) {
-      task.look_at_touches(first, first + lanes);
-    }
+    if (!hn::AllFalse(d, hn::Ne(hn::And(flags, outside), hn::Zero(d)))) task.found.inside = false;
+    first += block;
   }
   task.found.references += hn::GetLane(hn::SumOfLanes(d64, references));
   return first;
@@ -112,9 +129,6 @@ namespace {
 
 constexpr std::uint32_t kTrianglesPerTask = 4096;
 
-// Gathers take signed indices.
-constexpr std::size_t kMostGathered = std::size_t{1} << 31;
-
 void box_one_by_one(BoxTask& task, std::uint32_t first, std::uint32_t end) {
   for (std::uint32_t t = first; t < end; ++t) {
     const std::uint32_t v0 = task.mesh.vertex_index(t, 0);
@@ -132,6 +146,7 @@ void box_one_by_one(BoxTask& task, std::uint32_t first, std::uint32_t end) {
     }
     task.boxes[t] = box;
     task.found.references += task.axes.cells(box.lo, box.hi);
+    if (((c0 | c1 | c2) & kOutside) != 0) task.found.inside = false;
     if (((c0 | c1 | c2) & kTouchesBounds) != 0 && task.found.touches != kTouchesAll) {
       task.look_at_touches(t, t + 1);
     }
@@ -161,10 +176,10 @@ BoxPass box_triangles(const MeshView& mesh, const Box3& bounds,
                       Buffer<CodeBox>& boxes) {
   boxes.resize(mesh.triangle_count);
   if (mesh.triangle_count == 0) return {};
-  const bool vectors =
-      simd == Simd::widest && mesh.indices != nullptr && codes.size() < kMostGathered;
+  const bool vectors = simd == Simd::widest && mesh.indices != nullptr;
   std::atomic<std::uint64_t> references = 0;
   std::atomic<bool> indices_ok = true;
+  std::atomic<bool> inside = true;
   std::atomic<Touches> touches = touches_of_flat_axes(bounds);
   for_each_range(mesh.triangle_count, [&](std::uint32_t first, std::uint32_t end) {
     BoxTask task{mesh, bounds, codes, axes, boxes.data(), {}};
@@ -176,9 +191,10 @@ BoxPass box_triangles(const MeshView& mesh, const Box3& bounds,
     if (task.found.touches != before) {
       touches.fetch_or(task.found.touches, std::memory_order_relaxed);
     }
+    if (!task.found.inside) inside.store(false, std::memory_order_relaxed);
     if (!task.found.indices_ok) indices_ok.store(false, std::memory_order_relaxed);
   });
-  return {references, indices_ok, touches};
+  return {references, indices_ok, inside, touches};
 }
 
 ReferenceCounts count_references(std::span<const CodeBox> boxes, const AxisLevels& schedule,

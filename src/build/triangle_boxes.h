@@ -31,6 +31,7 @@ inline constexpr Touches kTouchesAll = 0x3f;
 struct BoxPass {
   std::uint64_t references = 0;  ///< M at the depth of the codes
   bool indices_ok = true;        ///< false: some index names no vertex; the rest is void
+  bool inside = true;            ///< no triangle has a vertex outside the bounds
   Touches touches = 0;           ///< over all vertices that triangles use
 };
 

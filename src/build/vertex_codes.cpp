@@ -70,9 +70,12 @@ std::size_t EncodePacked(const float* xyz, std::size_t count, const VertexEncode
     auto x = hn::Zero(d), y = x, z = x;
     hn::LoadInterleaved3(d, xyz + 3 * i, x, y, z);
     auto touches = hn::Eq(last, hn::Zero(d));
+    auto inside = hn::Eq(last, last);
     const auto code = [&](auto v, std::size_t a) {
       touches = hn::Or(touches, hn::Or(hn::Eq(v, hn::Set(d, e.sides.lo[a])),
                                        hn::Eq(v, hn::Set(d, e.sides.hi[a]))));
+      inside = hn::And(inside, hn::And(hn::Ge(v, hn::Set(d, e.bounds.lo[a])),
+                                       hn::Le(v, hn::Set(d, e.bounds.hi[a]))));
       const AxisQuantiser& quantiser = e.quantisers[a];
       const auto t = hn::Mul(hn::Sub(v, hn::Set(d, quantiser.lo)), hn::Set(d, quantiser.scale));
       const auto q = hn::ConvertTo(di, hn::Min(hn::Max(t, hn::Zero(d)), last));
@@ -80,8 +83,9 @@ std::size_t EncodePacked(const float* xyz, std::size_t count, const VertexEncode
       return Spread(du, hn::ShiftRightSame(hn::BitCast(du, q), shift), e.axes.axis[a]);
     };
     const auto all = hn::Or(code(x, 0), hn::Or(code(y, 1), code(z, 2)));
-    const auto flag = hn::IfThenElseZero(hn::RebindMask(du, touches), hn::Set(du, kTouchesBounds));
-    hn::StoreU(hn::Or(all, flag), du, codes + i);
+    const auto touch = hn::IfThenElseZero(hn::RebindMask(du, touches), hn::Set(du, kTouchesBounds));
+    const auto out = hn::IfThenZeroElse(hn::RebindMask(du, inside), hn::Set(du, kOutside));
+    hn::StoreU(hn::Or(all, hn::Or(touch, out)), du, codes + i);
   }
   return i;
 }
@@ -121,28 +125,37 @@ std::uint32_t code_of(Vec3 p, const VertexEncoder& e) {
   for (std::size_t a = 0; a < 3; ++a) {
     code |= e.axes.axis[a].spread(e.quantisers[a](p[a]) >> (kMaxAxisBits - e.axes.bits[a]));
     if (p[a] == e.sides.lo[a] || p[a] == e.sides.hi[a]) code |= kTouchesBounds;
+    if (!(p[a] >= e.bounds.lo[a] && p[a] <= e.bounds.hi[a])) code |= kOutside;
   }
   return code;
 }
 
 }  // namespace
 
-bool vertex_bounds(const MeshView& mesh, Simd simd, Box3& bounds) {
+bool vertex_bounds(const MeshView& mesh, std::span<const std::uint32_t> skipped, Simd simd,
+                   Box3& bounds) {
   const bool vectors = simd == Simd::widest && packed(mesh);
   std::atomic<bool> all_finite = true;
   tbb::combinable<Box3> parts;
   for_each_range(mesh.vertex_count, [&](std::size_t first, std::size_t end) {
     Box3& box = parts.local();
     bool finite = true;
-    if (vectors) {
-      first +=
-          HWY_DYNAMIC_DISPATCH(BoundsOfPacked)(packed_at(mesh, first), end - first, box, finite);
+    const auto look_at = [&](std::size_t v, std::size_t stop) {
+      if (vectors) {
+        v += HWY_DYNAMIC_DISPATCH(BoundsOfPacked)(packed_at(mesh, v), stop - v, box, finite);
+      }
+      for (; v < stop; ++v) {
+        const Vec3 p = mesh.position(static_cast<std::uint32_t>(v));
+        finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+        box.include(p);
+      }
+    };
+    auto skip = std::lower_bound(skipped.begin(), skipped.end(), first);
+    for (; skip != skipped.end() && *skip < end; ++skip) {
+      look_at(first, *skip);
+      first = *skip + std::size_t{1};
     }
-    for (; first < end; ++first) {
-      const Vec3 p = mesh.position(static_cast<std::uint32_t>(first));
-      finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-      box.include(p);
-    }
+    look_at(first, end);
     if (!finite) all_finite.store(false, std::memory_order_relaxed);
   });
   bounds = {};
@@ -158,14 +171,15 @@ bool vertex_bounds(const MeshView& mesh, Simd simd, Box3& bounds) {
   return all_finite;
 }
 
-VertexEncoder::VertexEncoder(const Box3& bounds, const AxisLevels& schedule, int depth)
-    : quantisers{make_axis_quantiser(bounds, schedule, 0), make_axis_quantiser(bounds, schedule, 1),
-                 make_axis_quantiser(bounds, schedule, 2)},
+VertexEncoder::VertexEncoder(const Box3& scene, const AxisLevels& schedule, int depth)
+    : quantisers{make_axis_quantiser(scene, schedule, 0), make_axis_quantiser(scene, schedule, 1),
+                 make_axis_quantiser(scene, schedule, 2)},
       axes(schedule, depth),
-      sides(bounds) {
+      bounds(scene),
+      sides(scene) {
   constexpr float kNever = std::numeric_limits<float>::quiet_NaN();
   for (std::size_t a = 0; a < 3; ++a) {
-    if (bounds.lo[a] == bounds.hi[a]) sides.lo[a] = sides.hi[a] = kNever;
+    if (scene.lo[a] == scene.hi[a]) sides.lo[a] = sides.hi[a] = kNever;
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -30,7 +31,7 @@ TEST(VertexCodes, ScalarAndWidestAgreeWithTheDefinition) {
     const Grid grid(expected, AxisSchedule::longest, depth);
     for (const Simd simd : {Simd::scalar, Simd::widest}) {
       Box3 bounds;
-      ASSERT_TRUE(vertex_bounds(mesh, simd, bounds));
+      ASSERT_TRUE(vertex_bounds(mesh, {}, simd, bounds));
       EXPECT_EQ(bounds, expected);
       for (std::size_t a = 0; a < 3; ++a) {
         EXPECT_FALSE(bounds.lo[a] == 0 && std::signbit(bounds.lo[a]));
@@ -74,7 +75,7 @@ TEST(VertexCodes, ReadAnyStrideAndAlignment) {
       strided.positions = bytes.data() + offset;
       strided.position_stride_bytes = stride;
       Box3 box;
-      ASSERT_TRUE(vertex_bounds(strided, Simd::widest, box));
+      ASSERT_TRUE(vertex_bounds(strided, {}, Simd::widest, box));
       EXPECT_EQ(box, bounds);
       encode_vertices(strided, encoder, Simd::widest, codes);
       EXPECT_EQ(codes, expected);
@@ -89,8 +90,33 @@ TEST(VertexCodes, NoticeWhatIsNotFiniteInEveryPlace) {
       owned.positions[v][v % 3] = bad;
       for (const Simd simd : {Simd::scalar, Simd::widest}) {
         Box3 bounds;
-        EXPECT_FALSE(vertex_bounds(owned.view(), simd, bounds)) << v;
+        EXPECT_FALSE(vertex_bounds(owned.view(), {}, simd, bounds)) << v;
       }
+    }
+  }
+}
+
+TEST(VertexCodes, SkipVerticesAndMarkThoseOutside) {
+  test::OwnedMesh owned = test::soup(2000, 1, 0.1f);
+  const std::vector<std::uint32_t> skipped{0, 1, 77, 3000, 5999, 7000};  // the last is none
+  const Box3 bounds = reference::scene_bound(owned.view()).value();
+  std::vector<Vec3> kept = owned.positions;
+  for (const std::uint32_t v : skipped) {
+    if (v < kept.size()) kept[v] = kept[2];
+    if (v < kept.size()) owned.positions[v] = {9, v % 2 == 0 ? NAN : -9.0f, INFINITY};
+  }
+  Box3 expected;
+  for (const Vec3& p : kept) expected.include(p);
+  const VertexEncoder encoder(expected, make_axis_levels(bounds, AxisSchedule::cyclic), 20);
+  for (const Simd simd : {Simd::scalar, Simd::widest}) {
+    Box3 found;
+    ASSERT_TRUE(vertex_bounds(owned.view(), skipped, simd, found));
+    EXPECT_EQ(found, expected);
+    Buffer<std::uint32_t> codes;
+    encode_vertices(owned.view(), encoder, simd, codes);
+    for (std::uint32_t v = 0; v < codes.size(); ++v) {
+      const bool outside = std::find(skipped.begin(), skipped.end(), v) != skipped.end();
+      ASSERT_EQ((codes[v] & kOutside) != 0, outside) << v;
     }
   }
 }
