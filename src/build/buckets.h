@@ -7,90 +7,63 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "build/bucket_grid.h"
+#include "build/buffer.h"
 #include "build/triangle_boxes.h"
-#include "grid/grid.h"
+#include "fasttree/build.h"
 
 namespace fasttree::build {
 
-/// How the bits of a Morton code are shared between buckets and the cells inside one.
-class BucketGrid {
- public:
-  explicit BucketGrid(const Grid& grid);
-
-  int bucket_bits() const { return bucket_bits_; }
-  int cell_bits() const { return cell_bits_; }
-  std::size_t bucket_count() const { return std::size_t{1} << bucket_bits_; }
-
-  /// Bits of a bucket's number for a depth: M(this) is the number of records.
-  static int bucket_bits_of(int depth);
-
-  /// A triangle's part in one bucket: its id, and the corners of its box inside the bucket.
-  using Record = std::uint64_t;
-
-  /// Calls work(bucket, record, number of cells) for each bucket the box reaches.
-  template <typename Work>
-  void for_each_record(const TriangleBox& box, std::uint32_t id, const Work& work) const;
-
-  /// Calls work(code inside the bucket) for each cell of a record, x fastest, then y, then z.
-  template <typename Work>
-  void for_each_cell(Record record, const Work& work) const;
-
-  static std::uint32_t id_of(Record record) { return static_cast<std::uint32_t>(record); }
-
- private:
-  struct Axis {
-    int to_depth = 0;    // shift from the finest grid
-    int local_bits = 0;  // of the coordinate inside a bucket
-    int lo_at = 0;       // where a record holds the corners
-    int hi_at = 0;
-    std::uint32_t mask = 0;
-    std::vector<std::uint32_t> bucket_code;  // bucket coordinate to its bits of the bucket
-    std::vector<std::uint32_t> cell_code;    // coordinate inside a bucket to its bits of the code
-  };
-  int bucket_bits_;
-  int cell_bits_;
-  std::array<Axis, 3> axes_;
-};
-
 /// A leaf before its bucket's place among the leaves is known.
 struct LeafStart {
-  std::uint32_t code = 0;   ///< whole Morton code
-  std::uint32_t first = 0;  ///< base index into the sorted references
+  std::uint32_t code;   ///< whole Morton code
+  std::uint32_t first;  ///< base index into the sorted references
+};
+
+/// References of one bucket written out, and counters of its cells: one a thread.
+struct BucketScratch {
+  Buffer<std::uint16_t> codes;
+  Buffer<std::uint32_t> ids;
+  Buffer<std::uint32_t> counts;
 };
 
 /// What the partition and the sort of the buckets leave behind, and memory for the next time. The
 /// arrays by bucket have one element more than there are buckets: where the last one ends.
 struct Buckets {
-  std::vector<BucketGrid::Record> records;
-  std::vector<std::uint64_t> record_begin;
-  std::vector<std::uint64_t> reference_begin;
-  std::vector<std::uint64_t> leaf_begin;  ///< into `leaves`: room for as many as there can be
-  std::vector<std::uint32_t> leaf_count;
-  std::vector<LeafStart> leaves;
+  Buffer<BucketGrid::Record> records;
+  Buffer<std::uint64_t> record_begin;
+  Buffer<std::uint64_t> reference_begin;
+  Buffer<std::uint64_t> leaf_begin;  ///< into `leaves`: room for as many as there can be
+  Buffer<std::uint32_t> leaf_count;
+  Buffer<LeafStart> leaves;
 
-  /// Counters of records and references by chunk of triangles and bucket.
-  std::vector<std::uint32_t> chunk_records;
-  std::vector<std::uint32_t> chunk_references;
+  /// By chunk of triangles and bucket: first how many records (upper half) and references (lower)
+  /// there are, then where the chunk's next record goes.
+  Buffer<std::uint64_t> chunk_counts;
+  std::size_t chunk_size = 0;
 
-  /// One a thread; zero between uses.
-  struct CellCounters {
-    std::vector<std::uint32_t> count;
-    std::vector<std::uint64_t> occupied;
-  };
-  tbb::enumerable_thread_specific<CellCounters> counters;
+  tbb::enumerable_thread_specific<BucketScratch> scratch;
 };
 
-/// Partitions one record a triangle and bucket, in parallel, stable: records of a bucket lie in
-/// order of triangle ids. `record_count` is M(bucket_bits).
-void partition(std::span<const TriangleBox> boxes, const BucketGrid& grid,
-               std::uint64_t record_count, Buckets& buckets);
+/// First half of the partition: counts, in parallel. Afterwards record_begin, reference_begin and
+/// leaf_begin are known, and thereby what the rest takes.
+void count_records(std::span<const CodeBox> boxes, const BucketGrid& grid, Simd simd,
+                   Buckets& buckets);
+
+/// Second half: puts one record a triangle and bucket into its bucket's place, in parallel, stable:
+/// records of a bucket lie in order of triangle ids.
+void place_records(std::span<const CodeBox> boxes, const BucketGrid& grid, Simd simd,
+                   Buckets& buckets);
 
 /// Expands and sorts each bucket, in parallel: writes all ids in order of code, and the leaves.
-void sort_buckets(const BucketGrid& grid, Buckets& buckets, std::span<std::uint32_t> ids);
+void sort_buckets(const BucketGrid& grid, Simd simd, Buckets& buckets,
+                  std::span<std::uint32_t> ids);
+
+/// Bytes of the arrays that count_records makes for chunks, and of all threads' scratch.
+std::uint64_t partition_bytes(std::uint64_t triangles, const BucketGrid& grid);
+std::uint64_t scratch_bytes(const BucketGrid& grid);
 
 }  // namespace fasttree::build

@@ -10,33 +10,55 @@
 namespace fasttree::build {
 namespace {
 
-std::vector<TriangleBox> random_boxes(std::uint32_t count, std::uint64_t seed, std::uint32_t size) {
+// A box by its cells at the finest grid.
+struct FinestBox {
+  std::array<std::uint32_t, 3> lo, hi;
+};
+
+std::vector<FinestBox> random_boxes(std::uint32_t count, std::uint64_t seed, std::uint32_t size) {
   test::Random random(seed);
-  std::vector<TriangleBox> boxes(count);
-  for (TriangleBox& box : boxes) {
+  std::vector<FinestBox> boxes(count);
+  for (FinestBox& box : boxes) {
     for (std::size_t a = 0; a < 3; ++a) {
-      const std::uint32_t lo = random.below(kFinestCells);
-      box.lo[a] = static_cast<std::uint16_t>(lo);
-      box.hi[a] = static_cast<std::uint16_t>(std::min(lo + random.below(size), kFinestCells - 1));
+      box.lo[a] = random.below(kFinestCells);
+      box.hi[a] = std::min(box.lo[a] + random.below(size), kFinestCells - 1);
     }
   }
   return boxes;
 }
 
-// Judge: every reference written out, then sorted by the reference's stable sort.
-void expect_same(const std::vector<TriangleBox>& boxes, const Grid& grid, Buckets& buckets) {
+// One small box after the other in the same place, so that whole vectors share a bucket.
+std::vector<FinestBox> coherent_boxes(std::uint32_t count) {
+  std::vector<FinestBox> boxes(count);
+  for (std::uint32_t t = 0; t < count; ++t) {
+    const std::uint32_t at = t / 40 * 97 % (kFinestCells - 400);
+    boxes[t] = {{at, at, at}, {at + t % 3 * 150, at + t % 5 * 90, at + t % 2}};
+  }
+  return boxes;
+}
+
+std::uint32_t code_at(const Grid& grid, const std::array<std::uint32_t, 3>& finest) {
+  Cell cell;
+  for (std::size_t a = 0; a < 3; ++a) cell[a] = finest[a] >> (kMaxAxisBits - grid.bits()[a]);
+  return grid.morton_code(cell);
+}
+
+// Judge: every reference written out, then sorted by the reference's stable sort. The boxes are
+// given at a grid `box_shift` levels deeper.
+void expect_same(const std::vector<FinestBox>& boxes, const Box3& bounds, AxisSchedule schedule,
+                 int depth, int box_shift, Simd simd, Buckets& buckets) {
+  const AxisLevels levels = make_axis_levels(bounds, schedule);
+  const Grid deep(bounds, schedule, std::min(depth + box_shift, levels.levels));
+  const Grid grid(bounds, schedule, std::min(depth, deep.depth()));
+  const BucketGrid bucket_grid(CodeAxes(levels, grid.depth()), deep.depth() - grid.depth());
+  EXPECT_EQ(bucket_grid.bucket_bits() + bucket_grid.cell_bits(), grid.depth());
+
   reference::References refs;
-  std::uint64_t records = 0;
-  const int bucket_bits = BucketGrid::bucket_bits_of(grid.depth());
-  const Grid coarse(grid.bounds(), grid.schedule(), bucket_bits);
+  std::vector<CodeBox> code_boxes;
   for (std::uint32_t t = 0; t < boxes.size(); ++t) {
-    const auto at = [&](const Grid& g, const std::array<std::uint16_t, 4>& corner) {
-      Cell cell;
-      for (std::size_t a = 0; a < 3; ++a) cell[a] = corner[a] >> (kMaxAxisBits - g.bits()[a]);
-      return cell;
-    };
-    records += CellBox{at(coarse, boxes[t].lo), at(coarse, boxes[t].hi)}.count();
-    const Cell lo = at(grid, boxes[t].lo), hi = at(grid, boxes[t].hi);
+    code_boxes.push_back({code_at(deep, boxes[t].lo), code_at(deep, boxes[t].hi)});
+    const Cell lo = grid.cell_of(code_at(grid, boxes[t].lo));
+    const Cell hi = grid.cell_of(code_at(grid, boxes[t].hi));
     for (std::uint32_t z = lo[2]; z <= hi[2]; ++z) {
       for (std::uint32_t y = lo[1]; y <= hi[1]; ++y) {
         for (std::uint32_t x = lo[0]; x <= hi[0]; ++x) {
@@ -49,12 +71,11 @@ void expect_same(const std::vector<TriangleBox>& boxes, const Grid& grid, Bucket
   refs = reference::radix_sort(std::move(refs));
   const reference::LeafTable expected = reference::leaf_node(refs);
 
-  const BucketGrid bucket_grid(grid);
-  EXPECT_EQ(bucket_grid.bucket_bits() + bucket_grid.cell_bits(), grid.depth());
-  partition(boxes, bucket_grid, records, buckets);
-  EXPECT_EQ(buckets.record_begin.back(), records);
+  count_records(code_boxes, bucket_grid, simd, buckets);
+  ASSERT_EQ(buckets.reference_begin.back(), refs.size());
+  place_records(code_boxes, bucket_grid, simd, buckets);
   std::vector<std::uint32_t> ids(refs.size());
-  sort_buckets(bucket_grid, buckets, ids);
+  sort_buckets(bucket_grid, simd, buckets, ids);
   ASSERT_EQ(ids, refs.ids);
   std::size_t leaf = 0;
   for (std::size_t b = 0; b < bucket_grid.bucket_count(); ++b) {
@@ -68,17 +89,21 @@ void expect_same(const std::vector<TriangleBox>& boxes, const Grid& grid, Bucket
   EXPECT_EQ(leaf, expected.size());
 }
 
+constexpr Box3 kCube{{0, 0, 0}, {1, 1, 1}};
+
 TEST(Buckets, EqualTheStableSortOfAllReferencesAtEveryDepth) {
   Buckets buckets;  // one for all: nothing may be left over from the build before
-  for (const Box3& bounds :
-       {Box3{{0, 0, 0}, {1, 1, 1}}, Box3{{0, 0, 0}, {1, 0, 20}}, Box3{{0, 0, 0}, {0, 1, 0}}}) {
+  for (const Box3& bounds : {kCube, Box3{{0, 0, 0}, {1, 0, 20}}, Box3{{0, 0, 0}, {0, 1, 0}}}) {
     for (const AxisSchedule axes : {AxisSchedule::cyclic, AxisSchedule::longest}) {
       for (int depth = 0; depth <= 30; depth += depth < 26 ? 3 : 1) {
-        const Grid grid(bounds, axes, depth);
-        SCOPED_TRACE(std::string(to_string(axes)) + " " + std::to_string(grid.depth()));
-        expect_same(random_boxes(300, 1, 3), grid, buckets);
-        expect_same(random_boxes(40, 2, depth < 20 ? 4000 : 300), grid, buckets);
-        if (HasFatalFailure()) return;
+        for (const Simd simd : {Simd::scalar, Simd::widest}) {
+          SCOPED_TRACE(std::string(to_string(axes)) + " " + std::to_string(depth));
+          expect_same(random_boxes(300, 1, 3), bounds, axes, depth, 0, simd, buckets);
+          expect_same(random_boxes(40, 2, depth < 20 ? 4000 : 300), bounds, axes, depth, 3, simd,
+                      buckets);
+          expect_same(coherent_boxes(200), bounds, axes, depth, 1, simd, buckets);
+          if (HasFatalFailure()) return;
+        }
       }
     }
   }
@@ -86,16 +111,25 @@ TEST(Buckets, EqualTheStableSortOfAllReferencesAtEveryDepth) {
 
 TEST(Buckets, KeepTheOrderAcrossChunks) {
   Buckets buckets;
-  expect_same(random_boxes(50000, 3, 100), Grid({{0, 0, 0}, {1, 1, 1}}, AxisSchedule::cyclic, 17),
-              buckets);
+  for (const Simd simd : {Simd::scalar, Simd::widest}) {
+    expect_same(random_boxes(50000, 3, 100), kCube, AxisSchedule::cyclic, 17, 0, simd, buckets);
+    expect_same(coherent_boxes(50000), kCube, AxisSchedule::cyclic, 17, 0, simd, buckets);
+  }
+}
+
+TEST(Buckets, ExpandABucketInSeveralBlocks) {
+  Buckets buckets;
+  for (const Simd simd : {Simd::scalar, Simd::widest}) {
+    expect_same(random_boxes(3000, 4, 12000), kCube, AxisSchedule::cyclic, 9, 0, simd, buckets);
+  }
 }
 
 TEST(Buckets, SplitTheBitsSoThatRecordsFit) {
   for (int depth = 0; depth <= 30; ++depth) {
     const int cells = depth - BucketGrid::bucket_bits_of(depth);
     EXPECT_GE(BucketGrid::bucket_bits_of(depth), 0);
-    EXPECT_LE(cells, 16) << "two corners in 32 bits";
-    EXPECT_LE(BucketGrid::bucket_bits_of(depth), 14);
+    EXPECT_LE(cells, BucketGrid::kMostCellBits);
+    EXPECT_LE(BucketGrid::bucket_bits_of(depth), 16);
   }
 }
 

@@ -95,6 +95,17 @@ TEST(Builder, PassesOverVerticesNobodyUses) {
     ASSERT_TRUE(tree.ok()) << tree.status().message();
     expect_same_bytes(tree.value(), expected);
   }
+  // A builder remembers them; another frame may use them after all.
+  test::OwnedMesh owned = used;
+  owned.positions.push_back({0.5f, 0.5f, 70});
+  for (int frame = 0; frame < 3; ++frame) {
+    expect_same_bytes(builder.build(owned.view()).value(), expected);
+  }
+  owned.indices.back() = static_cast<std::uint32_t>(owned.positions.size() - 1);
+  expect_same_bytes(builder.build(owned.view()).value(), reference_tree(owned.view(), {}));
+  expect_same_bytes(builder.build(used.view()).value(), expected);
+  owned.positions.back() = {NAN, 0, 0};
+  EXPECT_EQ(builder.build(owned.view()).status().code(), StatusCode::bad_input);
   MeshView nothing;
   nothing.vertex_count = 7;  // without positions, and nobody asks for them
   EXPECT_EQ(builder.build(nothing).value().nodes().size(), 1u);

@@ -9,7 +9,7 @@
 #include "build/buckets.h"
 #include "build/layers.h"
 #include "build/triangle_boxes.h"
-#include "build/vertex_cells.h"
+#include "build/vertex_codes.h"
 #include "fasttree/build.h"
 #include "fasttree/mesh.h"
 #include "fasttree/tree.h"
@@ -20,8 +20,11 @@ namespace fasttree::build {
 
 /// Working memory kept from build to build.
 struct Workspace {
-  std::vector<VertexCell> vertices;
-  std::vector<TriangleBox> boxes;
+  /// Vertices outside the bounds of the last mesh, which no triangle used, ascending; none where
+  /// they are too many. The next mesh is first tried without them.
+  Buffer<std::uint32_t> strays;
+  Buffer<std::uint32_t> vertex_codes;
+  Buffer<CodeBox> boxes;
   Buckets buckets;
   std::vector<std::uint32_t> first_node_of_bucket;
   std::vector<std::uint32_t> top_ids;  ///< profile realtime: of the top grid
@@ -38,6 +41,7 @@ struct TreeArrays {
 /// What the grid's cells hold, sorted; the cells themselves are in the workspace's buckets.
 struct SortedLeaves {
   Grid grid;
+  BucketGrid buckets{CodeAxes()};
   std::uint64_t references = 0;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compiled once for every instruction set by Highway's foreach_target; the plain C++ forms and the
 // choice between them stand at the end.
-#include "build/vertex_cells.h"
+#include "build/vertex_codes.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/combinable.h>
@@ -13,10 +13,12 @@
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "build/vertex_cells.cpp"
+#define HWY_TARGET_INCLUDE "build/vertex_codes.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target, as Highway asks.
 #include <hwy/highway.h>
+
+#include "build/bit_spread-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fasttree::build {
@@ -55,33 +57,35 @@ std::size_t BoundsOfPacked(const float* xyz, std::size_t count, Box3& bounds, bo
   return i;
 }
 
-std::size_t QuantisePacked(const float* xyz, std::size_t count, const Box3& bounds,
-                           const std::array<AxisQuantiser, 3>& quantisers, VertexCell* cells) {
+std::size_t EncodePacked(const float* xyz, std::size_t count, const VertexEncoder& encoder,
+                         std::uint32_t* codes) {
   const hn::ScalableTag<float> d;
   const hn::RebindToSigned<decltype(d)> di;
-  const hn::Rebind<std::uint16_t, decltype(d)> d16;
+  const hn::RebindToUnsigned<decltype(d)> du;
   const std::size_t lanes = hn::Lanes(d);
   const auto last = hn::Set(d, static_cast<float>(kFinestCells - 1));
-  auto* const out = reinterpret_cast<std::uint16_t*>(cells);
+  const VertexEncoder e = encoder;  // a copy: what `codes` points to is not it
   std::size_t i = 0;
   for (; i + lanes <= count; i += lanes) {
     auto x = hn::Zero(d), y = x, z = x;
     hn::LoadInterleaved3(d, xyz + 3 * i, x, y, z);
-    auto touches = hn::Zero(di);
-    const auto q = [&](auto v, int a) {
-      const auto lo = hn::Set(d, bounds.lo[static_cast<std::size_t>(a)]);
-      const auto hi = hn::Set(d, bounds.hi[static_cast<std::size_t>(a)]);
-      const auto at_lo = hn::RebindMask(di, hn::Eq(v, lo));
-      const auto at_hi = hn::RebindMask(di, hn::Eq(v, hi));
-      touches = hn::Or(touches, hn::IfThenElseZero(at_lo, hn::Set(di, 1 << a)));
-      touches = hn::Or(touches, hn::IfThenElseZero(at_hi, hn::Set(di, 8 << a)));
-      const AxisQuantiser& quantiser = quantisers[static_cast<std::size_t>(a)];
+    auto touches = hn::Eq(last, hn::Zero(d));
+    auto inside = hn::Eq(last, last);
+    const auto code = [&](auto v, std::size_t a) {
+      touches = hn::Or(touches, hn::Or(hn::Eq(v, hn::Set(d, e.sides.lo[a])),
+                                       hn::Eq(v, hn::Set(d, e.sides.hi[a]))));
+      inside = hn::And(inside, hn::And(hn::Ge(v, hn::Set(d, e.bounds.lo[a])),
+                                       hn::Le(v, hn::Set(d, e.bounds.hi[a]))));
+      const AxisQuantiser& quantiser = e.quantisers[a];
       const auto t = hn::Mul(hn::Sub(v, hn::Set(d, quantiser.lo)), hn::Set(d, quantiser.scale));
-      const auto cell = hn::ConvertTo(di, hn::Min(hn::Max(t, hn::Zero(d)), last));
-      return hn::DemoteTo(d16, cell);
+      const auto q = hn::ConvertTo(di, hn::Min(hn::Max(t, hn::Zero(d)), last));
+      const int shift = kMaxAxisBits - e.axes.bits[a];
+      return Spread(du, hn::ShiftRightSame(hn::BitCast(du, q), shift), e.axes.axis[a]);
     };
-    const auto qx = q(x, 0), qy = q(y, 1), qz = q(z, 2);
-    hn::StoreInterleaved4(qx, qy, qz, hn::DemoteTo(d16, touches), d16, out + 4 * i);
+    const auto all = hn::Or(code(x, 0), hn::Or(code(y, 1), code(z, 2)));
+    const auto touch = hn::IfThenElseZero(hn::RebindMask(du, touches), hn::Set(du, kTouchesBounds));
+    const auto out = hn::IfThenZeroElse(hn::RebindMask(du, inside), hn::Set(du, kOutside));
+    hn::StoreU(hn::Or(all, hn::Or(touch, out)), du, codes + i);
   }
   return i;
 }
@@ -94,7 +98,7 @@ HWY_AFTER_NAMESPACE();
 namespace fasttree::build {
 
 HWY_EXPORT(BoundsOfPacked);
-HWY_EXPORT(QuantisePacked);
+HWY_EXPORT(EncodePacked);
 
 namespace {
 
@@ -116,34 +120,42 @@ void for_each_range(std::size_t vertices, const Work& work) {
       [&](const tbb::blocked_range<std::size_t>& range) { work(range.begin(), range.end()); });
 }
 
-VertexCell cell_of(Vec3 p, const Box3& bounds, const std::array<AxisQuantiser, 3>& quantisers) {
-  VertexCell cell;
+std::uint32_t code_of(Vec3 p, const VertexEncoder& e) {
+  std::uint32_t code = 0;
   for (std::size_t a = 0; a < 3; ++a) {
-    cell.q[a] = static_cast<std::uint16_t>(quantisers[a](p[a]));
-    if (p[a] == bounds.lo[a]) cell.touches = static_cast<std::uint16_t>(cell.touches | 1 << a);
-    if (p[a] == bounds.hi[a]) cell.touches = static_cast<std::uint16_t>(cell.touches | 8 << a);
+    code |= e.axes.axis[a].spread(e.quantisers[a](p[a]) >> (kMaxAxisBits - e.axes.bits[a]));
+    if (p[a] == e.sides.lo[a] || p[a] == e.sides.hi[a]) code |= kTouchesBounds;
+    if (!(p[a] >= e.bounds.lo[a] && p[a] <= e.bounds.hi[a])) code |= kOutside;
   }
-  return cell;
+  return code;
 }
 
 }  // namespace
 
-bool vertex_bounds(const MeshView& mesh, Simd simd, Box3& bounds) {
+bool vertex_bounds(const MeshView& mesh, std::span<const std::uint32_t> skipped, Simd simd,
+                   Box3& bounds) {
   const bool vectors = simd == Simd::widest && packed(mesh);
   std::atomic<bool> all_finite = true;
   tbb::combinable<Box3> parts;
   for_each_range(mesh.vertex_count, [&](std::size_t first, std::size_t end) {
     Box3& box = parts.local();
     bool finite = true;
-    if (vectors) {
-      first +=
-          HWY_DYNAMIC_DISPATCH(BoundsOfPacked)(packed_at(mesh, first), end - first, box, finite);
+    const auto look_at = [&](std::size_t v, std::size_t stop) {
+      if (vectors) {
+        v += HWY_DYNAMIC_DISPATCH(BoundsOfPacked)(packed_at(mesh, v), stop - v, box, finite);
+      }
+      for (; v < stop; ++v) {
+        const Vec3 p = mesh.position(static_cast<std::uint32_t>(v));
+        finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+        box.include(p);
+      }
+    };
+    auto skip = std::lower_bound(skipped.begin(), skipped.end(), first);
+    for (; skip != skipped.end() && *skip < end; ++skip) {
+      look_at(first, *skip);
+      first = *skip + std::size_t{1};
     }
-    for (; first < end; ++first) {
-      const Vec3 p = mesh.position(static_cast<std::uint32_t>(first));
-      finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-      box.include(p);
-    }
+    look_at(first, end);
     if (!finite) all_finite.store(false, std::memory_order_relaxed);
   });
   bounds = {};
@@ -159,18 +171,29 @@ bool vertex_bounds(const MeshView& mesh, Simd simd, Box3& bounds) {
   return all_finite;
 }
 
-void quantise_vertices(const MeshView& mesh, const Box3& bounds,
-                       const std::array<AxisQuantiser, 3>& quantisers, Simd simd,
-                       std::vector<VertexCell>& cells) {
+VertexEncoder::VertexEncoder(const Box3& scene, const AxisLevels& schedule, int depth)
+    : quantisers{make_axis_quantiser(scene, schedule, 0), make_axis_quantiser(scene, schedule, 1),
+                 make_axis_quantiser(scene, schedule, 2)},
+      axes(schedule, depth),
+      bounds(scene),
+      sides(scene) {
+  constexpr float kNever = std::numeric_limits<float>::quiet_NaN();
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (scene.lo[a] == scene.hi[a]) sides.lo[a] = sides.hi[a] = kNever;
+  }
+}
+
+void encode_vertices(const MeshView& mesh, const VertexEncoder& encoder, Simd simd,
+                     Buffer<std::uint32_t>& codes) {
   const bool vectors = simd == Simd::widest && packed(mesh);
-  cells.resize(mesh.vertex_count);
+  codes.resize(mesh.vertex_count);
   for_each_range(mesh.vertex_count, [&](std::size_t first, std::size_t end) {
     if (vectors) {
-      first += HWY_DYNAMIC_DISPATCH(QuantisePacked)(packed_at(mesh, first), end - first, bounds,
-                                                    quantisers, &cells[first]);
+      first += HWY_DYNAMIC_DISPATCH(EncodePacked)(packed_at(mesh, first), end - first, encoder,
+                                                  &codes[first]);
     }
     for (; first < end; ++first) {
-      cells[first] = cell_of(mesh.position(static_cast<std::uint32_t>(first)), bounds, quantisers);
+      codes[first] = code_of(mesh.position(static_cast<std::uint32_t>(first)), encoder);
     }
   });
 }
