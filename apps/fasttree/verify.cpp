@@ -43,7 +43,7 @@ class VerifyCommand : public Command {
   const char* details() const override {
     return "Builds the scene's tree, or loads a tree file (--mesh names its scene), and checks\n"
            "  - every invariant of the tree, and that tree and mesh belong together;\n"
-           "  - for profile paper, that the fast and the reference builder, with and\n"
+           "  - for profiles realtime and paper, that the fast and the reference builder, with and\n"
            "    without SIMD, on one thread and on all, make these same bytes;\n"
            "  - that rays find what the oracle finds: to the bit against brute force; against\n"
            "    Embree within rounding, and to the bit against brute force where the two differ.\n"
@@ -110,12 +110,16 @@ class VerifyCommand : public Command {
                         hash_string(tree.hash()));
     bool ok = check_invariants(context, verify(tree, scene.view), "with the mesh");
     // Links of a broken tree must not be followed.
-    if (ok && tree.info().profile == Profile::paper) ok = check_bytes(context, scene.view, tree);
+    if (ok && has_reference(tree.info().profile)) ok = check_bytes(context, scene.view, tree);
     if (ok && rays_ > 0) ok = check_rays(context, scene.view, tree);
     return finish(context, ok);
   }
 
  private:
+  static bool has_reference(Profile profile) {
+    return profile == Profile::paper || profile == Profile::realtime;
+  }
+
   static std::string describe(const TreeInfo& info) {
     return info.profile == Profile::paper
                ? fmt::format("{}, {} axes", to_string(info.profile), to_string(info.axes))
@@ -126,7 +130,7 @@ class VerifyCommand : public Command {
   void take_over(const TreeInfo& info) {
     build_.settings.profile = info.profile;
     build_.settings.axes = info.axes;
-    build_.settings.depth = info.depth;
+    if (info.profile == Profile::paper) build_.settings.depth = info.depth;
   }
 
   Tree build(Context& context, const MeshView& mesh, BuildSettings settings,

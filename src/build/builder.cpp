@@ -8,6 +8,7 @@
 #include "build/realtime_build.h"
 #include "fasttree/build.h"
 #include "fasttree/device_image.h"
+#include "reference/realtime_build.h"
 #include "reference/reference_build.h"
 #include "reference/scene_bound.h"
 #include "support/stage_clock.h"
@@ -29,6 +30,11 @@ struct Builder::Impl {
   }
 
   Status build_realtime(const MeshView& mesh, const BuildSettings& settings, Tree& tree) {
+    if (settings.implementation == Implementation::reference) {
+      Result<Tree> built = reference::realtime_build(mesh, settings, stats);
+      if (built.ok()) tree = std::move(built).value();
+      return built.status();
+    }
     tree.release(arrays.nodes, arrays.ids);
     Status status = build::realtime_build(mesh, settings, workspace, arrays, stats);
     if (!status.ok()) return status;

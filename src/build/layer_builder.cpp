@@ -10,6 +10,10 @@
 namespace fasttree::build {
 namespace {
 
+// How many triangles before its use something is asked for.
+constexpr std::size_t kIndicesAhead = 48;
+constexpr std::size_t kVerticesAhead = 24;
+
 double half_area(const Box3& box, int x_bits, int y_bits, int z_bits) {
   const double x = static_cast<double>(box.hi.x - box.lo.x) / (1 << x_bits);
   const double y = static_cast<double>(box.hi.y - box.lo.y) / (1 << y_bits);
@@ -24,28 +28,44 @@ void make_room(std::vector<T>& v, std::size_t n) {
 
 }  // namespace
 
-void LayerBuilder::build(const MeshView& mesh, std::span<const std::uint32_t> ids,
-                         const Box3& cell, int levels_above, Simd simd, LayerOutput& output) {
-  ids_ = ids;
+void LayerBuilder::build(const MeshView& mesh, std::span<const std::uint32_t> all_ids,
+                         std::size_t first, std::size_t end, const Box3& cell, int levels_above,
+                         Simd simd, LayerOutput& output) {
+  ids_ = all_ids.subspan(first, end - first);
   simd_ = simd;
   output_ = &output;
   lists_end_ = 0;
-  const auto size = static_cast<std::uint32_t>(ids.size());
-  if (size > kRealtimeRule.leaf_size) load(mesh);
+  const auto size = static_cast<std::uint32_t>(ids_.size());
+  if (size > kRealtimeRule.leaf_size) load(mesh, all_ids, first);
   emit_list({0, size, cell, std::uint64_t{kRealtimeRule.whole_growth} * size, 0,
              static_cast<int>(kMaxTreeDepth) - levels_above});
 }
 
-void LayerBuilder::load(const MeshView& mesh) {
+void LayerBuilder::load(const MeshView& mesh, std::span<const std::uint32_t> all_ids,
+                        std::size_t first) {
   all_.resize(ids_.size());
   std::array<float*, 9> out;
   for (std::size_t c = 0; c < 9; ++c) out[c] = all_.coordinate[c].data();
+  const std::uint32_t* const ids = all_ids.data();
+  const std::size_t last = all_ids.size() - 1;
+  const auto* const positions = static_cast<const char*>(mesh.positions);
   for (std::size_t i = 0; i < ids_.size(); ++i) {
-    const std::array<Vec3, 3> corners = mesh.triangle(ids_[i]);
-    for (std::size_t c = 0; c < 3; ++c) {
-      out[3 * c][i] = corners[c].x;
-      out[3 * c + 1][i] = corners[c].y;
-      out[3 * c + 2][i] = corners[c].z;
+    // The triangles of a cell are anywhere in the mesh. Those of the next cells are fetched too.
+    const std::size_t at = first + i;
+    if (mesh.indices != nullptr) {
+      __builtin_prefetch(mesh.indices + std::size_t{3} * ids[std::min(at + kIndicesAhead, last)]);
+    }
+    const std::uint32_t next = ids[std::min(at + kVerticesAhead, last)];
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      __builtin_prefetch(positions + mesh.vertex_index(next, c) * mesh.position_stride_bytes);
+    }
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      float p[3];
+      std::memcpy(p, positions + mesh.vertex_index(ids[at], c) * mesh.position_stride_bytes,
+                  sizeof p);
+      out[3 * c][i] = p[0];
+      out[3 * c + 1][i] = p[1];
+      out[3 * c + 2][i] = p[2];
     }
   }
   all_.pad();
@@ -80,16 +100,18 @@ void LayerBuilder::emit_list(const List& list) {
 }
 
 void LayerBuilder::emit_leaf(const List& list) {
-  auto& ids = output_->ids;
-  const std::size_t first = ids.size();
-  output_->nodes.push_back(Node::leaf(static_cast<std::uint32_t>(first), list.size));
-  ids.resize(first + list.size);
+  LayerOutput& out = *output_;
+  make_room(out.nodes, out.node_count + 1);
+  make_room(out.ids, out.id_count + list.size);
+  out.nodes[out.node_count++] = Node::leaf(static_cast<std::uint32_t>(out.id_count), list.size);
+  std::uint32_t* const ids = out.ids.data() + out.id_count;
+  out.id_count += list.size;
   if (list.layer == 0) {
-    std::copy(ids_.begin(), ids_.end(), ids.begin() + static_cast<std::ptrdiff_t>(first));
+    std::copy(ids_.begin(), ids_.end(), ids);
     return;
   }
   const std::uint32_t* const places = lists_.data() + list.begin;
-  for (std::uint32_t i = 0; i < list.size; ++i) ids[first + i] = ids_[places[i]];
+  for (std::uint32_t i = 0; i < list.size; ++i) ids[i] = ids_[places[i]];
 }
 
 void LayerBuilder::emit_children(const Layer& layer, std::size_t first, std::size_t end) {
@@ -105,11 +127,11 @@ void LayerBuilder::emit_children(const Layer& layer, std::size_t first, std::siz
   const auto split = static_cast<std::size_t>(
       std::lower_bound(codes + first, codes + end, upper_code) - codes);
   const Grid::Split plane = layer.grid.split_below(upper_code, m);
-  const std::size_t node = output_->nodes.size();
-  output_->nodes.emplace_back();
+  const std::size_t node = output_->node_count++;
+  make_room(output_->nodes, node + 1);
   emit_children(layer, first, split);
   output_->nodes[node] = Node::inner(plane.axis, plane.position,
-                                     static_cast<std::uint32_t>(output_->nodes.size()));
+                                     static_cast<std::uint32_t>(output_->node_count));
   emit_children(layer, split, end);
 }
 
@@ -154,8 +176,9 @@ bool LayerBuilder::make_layer(const List& list, Layer& layer) {
   grid.make_codes();
   mask_layer(triangles, grid, simd_, cells_);
 
-  make_room(entries_, references);
-  layer.kept = put_into_cells(triangles, grid);
+  entries_.resize(references);
+  put_into_cells(triangles, grid);
+  layer.kept = static_cast<std::uint32_t>(entries_.count);
   if (layer.kept == 0) return false;
 
   const double cell_area = half_area(bounds, grid.bits(0), grid.bits(1), grid.bits(2));
@@ -178,46 +201,28 @@ bool LayerBuilder::make_layer(const List& list, Layer& layer) {
   if (!worth || fewest == list.size) return false;
 
   std::uint32_t* const lists = lists_.data();
-  if (list.layer == 0) {
-    for (std::size_t i = 0; i < entry_count_; ++i) {
-      const std::uint64_t entry = entries_[i];
-      lists[counters_[entry >> 32]++] = static_cast<std::uint32_t>(entry);
-    }
-  } else {
-    const std::uint32_t* const places = lists + list.begin;
-    for (std::size_t i = 0; i < entry_count_; ++i) {
-      const std::uint64_t entry = entries_[i];
-      lists[counters_[entry >> 32]++] = places[static_cast<std::uint32_t>(entry)];
-    }
+  const std::uint32_t* const places = lists + list.begin;
+  for (std::size_t i = 0; i < entries_.count; ++i) {
+    const std::uint32_t triangle = entries_.triangle[i];
+    lists[counters_[entries_.code[i]]++] = list.layer == 0 ? triangle : places[triangle];
   }
   lists_end_ = place;
   layer.list = list;
   return true;
 }
 
-std::uint32_t LayerBuilder::put_into_cells(const LayerTriangles& triangles,
-                                           const LocalGrid& grid) {
-  std::fill_n(counters_.begin(), std::size_t{1} << grid.depth(), 0u);
-  entry_count_ = 0;
-  for (std::uint32_t i = 0; i < triangles.size; ++i) {
-    unsigned mask = cells_.mask[i];
-    const auto x = static_cast<std::uint32_t>(cells_.lo[0][i]);
-    const auto y = static_cast<std::uint32_t>(cells_.lo[1][i]);
-    const auto z = static_cast<std::uint32_t>(cells_.lo[2][i]);
-    if (mask == 1) {
-      put(grid.code_bits(0, x) | grid.code_bits(1, y) | grid.code_bits(2, z), i);
-      continue;
-    }
-    for (; mask != 0; mask &= mask - 1) {
-      const auto cell = static_cast<unsigned>(std::countr_zero(mask));
-      put(grid.code_bits(0, x + (cell & 1)) | grid.code_bits(1, y + (cell >> 1 & 1)) |
-              grid.code_bits(2, z + (cell >> 2)),
-          i);
-    }
-    const auto span = [&](std::size_t a) { return cells_.hi[a][i] - cells_.lo[a][i]; };
-    if (std::max({span(0), span(1), span(2)}) > 1) put_large(triangles, grid, i);
+void LayerBuilder::put_into_cells(const LayerTriangles& triangles, const LocalGrid& grid) {
+  entries_.count = 0;
+  const auto size = static_cast<std::uint32_t>(triangles.size);
+  std::uint32_t done = 0;
+  for (const std::uint32_t large : std::span(cells_.large.data(), cells_.large_count)) {
+    append_masked(done, large, grid, cells_, simd_, entries_);
+    put_large(triangles, grid, large);
+    done = large + 1;
   }
-  return static_cast<std::uint32_t>(entry_count_);
+  append_masked(done, size, grid, cells_, simd_, entries_);
+  std::fill_n(counters_.begin(), std::size_t{1} << grid.depth(), 0u);
+  for (std::size_t i = 0; i < entries_.count; ++i) ++counters_[entries_.code[i]];
 }
 
 void LayerBuilder::put_large(const LayerTriangles& triangles, const LocalGrid& grid,
@@ -243,7 +248,9 @@ void LayerBuilder::put_large(const LayerTriangles& triangles, const LocalGrid& g
                                     static_cast<float>(z))) {
           continue;
         }
-        put(zy | grid.code_bits(0, origin[0] + x), triangle);
+        entries_.code[entries_.count] =
+            static_cast<std::uint16_t>(zy | grid.code_bits(0, origin[0] + x));
+        entries_.triangle[entries_.count++] = triangle;
       }
     }
   }

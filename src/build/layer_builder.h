@@ -17,19 +17,21 @@
 namespace fasttree::build {
 
 /// Subtrees in pre-order, one after the other. Upper children and first ids count from the
-/// beginning of the two arrays.
+/// beginning of the two arrays, which have room for more.
 struct LayerOutput {
   std::vector<Node> nodes;
   std::vector<std::uint32_t> ids;
+  std::size_t node_count = 0;
+  std::size_t id_count = 0;
 };
 
 /// One a thread; keeps its memory from list to list and from build to build.
 class LayerBuilder {
  public:
-  /// Appends the subtree of a cell that holds these triangles and has `levels_above` levels of the
-  /// top grid above it.
-  void build(const MeshView& mesh, std::span<const std::uint32_t> ids, const Box3& cell,
-             int levels_above, Simd simd, LayerOutput& output);
+  /// Appends the subtree of a cell that holds the triangles `all_ids[first ... end)` and has
+  /// `levels_above` levels of the top grid above it.
+  void build(const MeshView& mesh, std::span<const std::uint32_t> all_ids, std::size_t first,
+             std::size_t end, const Box3& cell, int levels_above, Simd simd, LayerOutput& output);
 
  private:
   static constexpr std::size_t kMostCells = std::size_t{1} << kRealtimeRule.layer_most_depth;
@@ -54,19 +56,15 @@ class LayerBuilder {
     std::array<std::size_t, kMostCells + 1> begin;
   };
 
-  void load(const MeshView& mesh);
+  void load(const MeshView& mesh, std::span<const std::uint32_t> all_ids, std::size_t first);
   const LayerTriangles& triangles_of(const List& list);
   void emit_list(const List& list);
   void emit_leaf(const List& list);
   void emit_children(const Layer& layer, std::size_t first, std::size_t end);
   List child_of(const Layer& layer, std::size_t child) const;
   bool make_layer(const List& list, Layer& layer);
-  std::uint32_t put_into_cells(const LayerTriangles& triangles, const LocalGrid& grid);
+  void put_into_cells(const LayerTriangles& triangles, const LocalGrid& grid);
   void put_large(const LayerTriangles& triangles, const LocalGrid& grid, std::uint32_t triangle);
-  void put(std::uint32_t code, std::uint32_t triangle) {
-    entries_[entry_count_++] = std::uint64_t{code} << 32 | triangle;
-    ++counters_[code];
-  }
 
   std::span<const std::uint32_t> ids_;
   Simd simd_ = Simd::widest;
@@ -74,8 +72,7 @@ class LayerBuilder {
   LayerTriangles all_;   // of the cell of the top grid
   LayerTriangles part_;  // of one list
   LayerCells cells_;
-  std::vector<std::uint64_t> entries_;  // code and place in the list
-  std::size_t entry_count_ = 0;
+  LayerEntries entries_;
   std::array<std::uint32_t, kMostCells> counters_{};
   std::vector<std::uint32_t> lists_;  // a stack
   std::size_t lists_end_ = 0;

@@ -4,6 +4,7 @@
 #include "build/layer_kernels.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "grid/cell_overlap.h"
 
@@ -225,7 +226,7 @@ void MaskLayer(const LayerTriangles& triangles, const LocalGrid& grid, LayerCell
   const hn::Rebind<std::uint8_t, I> d8;
   const hn::RebindToUnsigned<I> du;
   const std::size_t lanes = hn::Lanes(di);
-  std::size_t tests = 0;
+  std::size_t tests = 0, large = 0;
   for (std::size_t i = 0; i < triangles.size; i += lanes) {
     const auto span = [&](std::size_t a) {
       return hn::Sub(hn::LoadU(di, cells.hi[a].data() + i), hn::LoadU(di, cells.lo[a].data() + i));
@@ -239,12 +240,17 @@ void MaskLayer(const LayerTriangles& triangles, const LocalGrid& grid, LayerCell
     mask = hn::IfThenElseZero(small, mask);
     hn::StoreU(hn::DemoteTo(d8, mask), d8, cells.mask.data() + i);
     auto tested = hn::And(small, hn::Gt(hn::Add(hn::Add(x, y), z), one));
+    auto is_large = hn::Not(small);
     if (triangles.size - i < lanes) {
-      tested = hn::And(tested, hn::FirstN(di, triangles.size - i));
+      const auto there = hn::FirstN(di, triangles.size - i);
+      tested = hn::And(tested, there);
+      is_large = hn::And(is_large, there);
     }
     const auto index = hn::Iota(du, static_cast<std::uint32_t>(i));
     tests += hn::CompressStore(index, hn::RebindMask(du, tested), du, cells.tests.data() + tests);
+    large += hn::CompressStore(index, hn::RebindMask(du, is_large), du, cells.large.data() + large);
   }
+  cells.large_count = large;
   cells.test_count = tests;
   if (tests == 0) return;
   for (std::size_t l = 0; l < lanes; ++l) cells.tests[tests + l] = cells.tests[tests - 1];
@@ -270,6 +276,35 @@ void MaskLayer(const LayerTriangles& triangles, const LocalGrid& grid, LayerCell
   }
 }
 
+// Without a branch on how many cells a triangle is in: as many entries as a mask can have are
+// written, and those behind the last one are overwritten by the next triangle.
+void AppendMasked(std::uint32_t first, std::uint32_t end, const LocalGrid& grid,
+                  const LayerCells& cells, LayerEntries& entries) {
+#if HWY_TARGET == HWY_SCALAR
+  append_masked(first, end, grid, cells, Simd::scalar, entries);
+#else
+  const hn::FixedTag<std::uint16_t, 8> d;
+  const hn::FixedTag<std::uint32_t, 4> d32;
+  std::uint16_t* code = entries.code.data() + entries.count;
+  std::uint32_t* triangle = entries.triangle.data() + entries.count;
+  for (std::uint32_t i = first; i < end; ++i) {
+    const auto bits = [&](std::size_t a) {
+      return hn::LoadU(
+          d, grid.corners(a, static_cast<std::uint32_t>(cells.lo[a][i])).data());
+    };
+    const auto codes = hn::Or(hn::Or(bits(0), bits(1)), bits(2));
+    const auto mask = hn::LoadMaskBits(d, &cells.mask[i]);
+    hn::StoreU(hn::Compress(codes, mask), d, code);
+    hn::StoreU(hn::Set(d32, i), d32, triangle);
+    hn::StoreU(hn::Set(d32, i), d32, triangle + 4);
+    const int count = std::popcount(cells.mask[i]);
+    code += count;
+    triangle += count;
+  }
+  entries.count = static_cast<std::size_t>(code - entries.code.data());
+#endif
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace fasttree::build
 HWY_AFTER_NAMESPACE();
@@ -281,6 +316,7 @@ HWY_EXPORT(BoundsOf);
 HWY_EXPORT(QuantiseLayer);
 HWY_EXPORT(CoarsenLayer);
 HWY_EXPORT(MaskLayer);
+HWY_EXPORT(AppendMasked);
 
 namespace {
 
@@ -363,7 +399,7 @@ void mask_layer(const LayerTriangles& triangles, const LocalGrid& grid, Simd sim
     HWY_DYNAMIC_DISPATCH(MaskLayer)(triangles, grid, cells);
     return;
   }
-  cells.test_count = 0;
+  cells.test_count = cells.large_count = 0;
   for (std::size_t i = 0; i < triangles.size; ++i) {
     const std::int32_t x = cells.hi[0][i] - cells.lo[0][i];
     const std::int32_t y = cells.hi[1][i] - cells.lo[1][i];
@@ -374,8 +410,29 @@ void mask_layer(const LayerTriangles& triangles, const LocalGrid& grid, Simd sim
       if (y == 1) mask |= mask << 2;
       if (z == 1) mask |= mask << 4;
       if (x + y + z > 1) mask &= tested_mask(triangles, grid, cells, i);
+    } else {
+      cells.large[cells.large_count++] = static_cast<std::uint32_t>(i);
     }
     cells.mask[i] = static_cast<std::uint8_t>(mask);
+  }
+}
+
+void append_masked(std::uint32_t first, std::uint32_t end, const LocalGrid& grid,
+                   const LayerCells& cells, Simd simd, LayerEntries& entries) {
+  if (simd == Simd::widest) {
+    HWY_DYNAMIC_DISPATCH(AppendMasked)(first, end, grid, cells, entries);
+    return;
+  }
+  for (std::uint32_t i = first; i < end; ++i) {
+    for (unsigned mask = cells.mask[i]; mask != 0; mask &= mask - 1) {
+      const auto cell = static_cast<std::size_t>(std::countr_zero(mask));
+      unsigned code = 0;
+      for (std::size_t a = 0; a < 3; ++a) {
+        code |= grid.corners(a, static_cast<std::uint32_t>(cells.lo[a][i]))[cell];
+      }
+      entries.code[entries.count] = static_cast<std::uint16_t>(code);
+      entries.triangle[entries.count++] = i;
+    }
   }
 }
 

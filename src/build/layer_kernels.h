@@ -47,6 +47,9 @@ struct LayerCells {
   /// Triangles whose mask has to be tested for overlap.
   std::vector<std::uint32_t> tests;
   std::size_t test_count = 0;
+  /// Triangles with a larger box, in order.
+  std::vector<std::uint32_t> large;
+  std::size_t large_count = 0;
 
   void resize(std::size_t n) {
     if (mask.size() >= n + kLayerPadding) return;
@@ -55,6 +58,7 @@ struct LayerCells {
       hi[a].resize(n + kLayerPadding);
     }
     tests.resize(n + kLayerPadding);
+    large.resize(n + kLayerPadding);
     mask.resize(n + kLayerPadding);
   }
 };
@@ -69,9 +73,26 @@ std::uint64_t quantise_layer(const LayerTriangles& triangles, const LocalGrid& g
 /// Halves the coordinates on an axis and counts again.
 std::uint64_t coarsen_layer(std::size_t count, std::size_t axis, Simd simd, LayerCells& cells);
 
-/// Fills `mask`, tested for overlap where a box spans two axes or more.
+/// Fills `mask` and `large`, masks tested for overlap where a box spans two axes or more.
 void mask_layer(const LayerTriangles& triangles, const LocalGrid& grid, Simd simd,
                 LayerCells& cells);
+
+/// References of a layer: which cell, and which triangle of the list.
+struct LayerEntries {
+  std::vector<std::uint16_t> code;
+  std::vector<std::uint32_t> triangle;
+  std::size_t count = 0;
+
+  void resize(std::size_t n) {
+    if (code.size() >= n + kLayerPadding) return;
+    triangle.resize(n + n / 2 + kLayerPadding);
+    code.resize(n + n / 2 + kLayerPadding);
+  }
+};
+
+/// Appends the cells in the masks of triangles [first, end), in order.
+void append_masked(std::uint32_t first, std::uint32_t end, const LocalGrid& grid,
+                   const LayerCells& cells, Simd simd, LayerEntries& entries);
 
 /// A corner in units of cells.
 inline float in_cells(const LocalGrid& grid, std::size_t axis, float v) {

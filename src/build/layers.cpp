@@ -59,12 +59,12 @@ void list_cells(const Buckets& buckets, std::size_t ids, Layers& layers) {
 // Nodes and ids of a cell's subtree: up to where the next of its chunk begins.
 std::uint32_t nodes_end(const Layers& layers, const Layers::Chunk& chunk, std::size_t cell) {
   return cell + 1 < chunk.end ? layers.cells[cell + 1].node_first
-                              : static_cast<std::uint32_t>(chunk.output.nodes.size());
+                              : static_cast<std::uint32_t>(chunk.output.node_count);
 }
 
 std::uint32_t ids_end(const Layers& layers, const Layers::Chunk& chunk, std::size_t cell) {
   return cell + 1 < chunk.end ? layers.cells[cell + 1].id_first
-                              : static_cast<std::uint32_t>(chunk.output.ids.size());
+                              : static_cast<std::uint32_t>(chunk.output.id_count);
 }
 
 // The nodes above the cells' subtrees, from the last to the first as in emit_nodes; and the place of
@@ -117,14 +117,14 @@ void build_layers(const MeshView& mesh, const Grid& grid, const Buckets& buckets
   tbb::parallel_for(std::size_t{0}, layers.chunk_count, [&](std::size_t c) {
     Layers::Chunk& chunk = layers.chunks[c];
     LayerOutput& output = chunk.output;
-    output.nodes.clear();
-    output.ids.clear();
+    output.node_count = 0;
+    output.id_count = 0;
     LayerBuilder& builder = layers.builders.local();
     for (std::size_t j = chunk.begin; j < chunk.end; ++j) {
       Layers::TopCell& cell = layers.cells[j];
-      cell.node_first = static_cast<std::uint32_t>(output.nodes.size());
-      cell.id_first = static_cast<std::uint32_t>(output.ids.size());
-      builder.build(mesh, ids.subspan(cell.first, layers.cells[j + 1].first - cell.first),
+      cell.node_first = static_cast<std::uint32_t>(output.node_count);
+      cell.id_first = static_cast<std::uint32_t>(output.id_count);
+      builder.build(mesh, ids, cell.first, layers.cells[j + 1].first,
                     box_of(grid, cell.code), grid.depth(), simd, output);
     }
   });
@@ -139,8 +139,8 @@ Status assemble(const Grid& grid, Layers& layers, std::vector<Node>& nodes,
     for (std::size_t j = chunk.begin; j < chunk.end; ++j) {
       layers.cells[j].id_place = static_cast<std::uint32_t>(id_count + layers.cells[j].id_first);
     }
-    node_count += chunk.output.nodes.size();
-    id_count += chunk.output.ids.size();
+    node_count += chunk.output.node_count;
+    id_count += chunk.output.id_count;
   }
   if (node_count >= kMaxNodes) {
     return {StatusCode::resource_limit, "build: the tree would have " + std::to_string(node_count) +

@@ -52,6 +52,15 @@ void LocalGrid::make_codes() {
     }
     size[a] *= 2;
   }
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::uint32_t k = 0; k < size[a]; ++k) {
+      const std::uint16_t here = code_[a][k];
+      const std::uint16_t next = k + 1 < size[a] ? code_[a][k + 1] : here;
+      for (std::size_t corner = 0; corner < 8; ++corner) {
+        corners_[a][k][corner] = corner >> a & 1 ? next : here;
+      }
+    }
+  }
 }
 
 std::uint32_t LocalGrid::coordinate_of(std::uint32_t code, std::size_t axis) const {

@@ -32,6 +32,13 @@ class LocalGrid {
   float to_cells(std::size_t axis) const { return to_cells_[axis]; }
 
   std::uint32_t code_bits(std::size_t axis, std::uint32_t cell) const { return code_[axis][cell]; }
+  /// For each of the two by two by two cells from `cell` on this axis, bit x + 2 y + 4 z, its bits
+  /// of the code: those of the three axes together are the cells' codes.
+  using Corners = std::array<std::uint16_t, 8>;
+  const Corners& corners(std::size_t axis, std::uint32_t cell) const {
+    return corners_[axis][cell];
+  }
+
   std::uint32_t coordinate_of(std::uint32_t code, std::size_t axis) const;
 
   float plane(std::size_t axis, std::uint32_t k) const {
@@ -51,6 +58,7 @@ class LocalGrid {
   std::array<float, 3> hi_{};
   std::array<float, 3> to_cells_{};
   std::array<std::array<std::uint16_t, std::size_t{1} << kMostLevels>, 3> code_;
+  std::array<std::array<Corners, std::size_t{1} << kMostLevels>, 3> corners_;
 };
 
 }  // namespace fasttree::build
