@@ -101,7 +101,7 @@ class CompareCommand : public Command {
            "of the first kd-tree over Embree: more than 1 where the tree is faster.\n"
            "Builders: realtime, paper-cyclic, paper-longest, sah-binned, sah-exact, embree-low,\n"
            "embree-medium; embree is both.\n\n"
-           "Examples:\n"
+           "Example:\n"
            "  fasttree compare bunny.ply --threads 2 --json bunny.json --svg bunny.svg\n"
            "  fasttree compare bunny.ply --profile sah-binned --view tight\n"
            "  fasttree compare sponza.ply --eye -11,4,0 --target 10,5,0 --light 0,10,0";
