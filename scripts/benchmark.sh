@@ -80,7 +80,7 @@ jq -rs '
   | @tsv' "${results[@]}" | tee "$out/ratios.tsv" |
   awk -F'\t' '{
     printf "%-12s %-14s", $1, $2
-    for (i = 3; i <= NF; ++i) printf " %*s", i > 8 ? 14 : 8, $i
+    for (i = 3; i <= NF; ++i) printf(i > 8 ? " %14s" : " %8s", $i)
     print ""
   }'
 note "figures and charts: $PWD/$out/"

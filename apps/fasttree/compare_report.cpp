@@ -24,6 +24,11 @@ double mtriangles_per_s(const Comparison& c, const Figures& f) {
   return f.build_ms > 0 ? c.triangles / (f.build_ms * 1e3) : 0;
 }
 
+/// "1 thread", "2 threads"
+std::string counted(std::uint64_t n, const char* what) {
+  return fmt::format("{} {}{}", with_commas(n), what, n == 1 ? "" : "s");
+}
+
 std::string text_of(const std::optional<double>& ratio) {
   return ratio ? fmt::format("{:.2f}", *ratio) : "-";
 }
@@ -181,10 +186,11 @@ ordered_json contender_json(const Comparison& c, const Record& record, const Fig
 }  // namespace
 
 void print(Output& output, const Comparison& c) {
-  output.line("{}: {} triangles; {} primary, {} shadow, {} diffuse rays; {} threads", c.scene,
+  output.line("{}: {} triangles; {} primary, {} shadow, {} diffuse rays; {}", c.scene,
               with_commas(c.triangles), with_commas(c.counts[0]), with_commas(c.counts[1]),
-              with_commas(c.counts[2]), c.threads);
-  output.line("medians of {} rounds, after one that warms up and does not count", c.rounds);
+              with_commas(c.counts[2]), counted(static_cast<std::uint64_t>(c.threads), "thread"));
+  output.line("medians of {}, after one that warms up and does not count",
+              counted(c.rounds, "round"));
   output.line("frame: build, primary and shadow rays; packet: the fastest packets; Mray/s");
   output.line("");
   std::vector<std::string> header = {"builder", "build ms", "frame ms"};
@@ -250,8 +256,8 @@ std::string svg_of(const Comparison& c) {
     panels.push_back(panel);
   }
   times("Frame: build, primary and shadow rays in ms (shorter is better)", &Figures::frame_ms);
-  return bar_chart_svg(fmt::format("{}, {} triangles, {} thread{}", c.scene,
-                                   with_commas(c.triangles), c.threads, c.threads == 1 ? "" : "s"),
+  return bar_chart_svg(fmt::format("{}, {}, {}", c.scene, counted(c.triangles, "triangle"),
+                                   counted(static_cast<std::uint64_t>(c.threads), "thread")),
                        panels);
 }
 

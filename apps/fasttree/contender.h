@@ -23,6 +23,15 @@ struct Traced {
   std::vector<std::uint8_t> flags;  ///< shadow rays
 };
 
+/// What is measured of a kd-tree only.
+struct TreeRecord {
+  std::vector<double> layout_ms;  ///< a counted round: what of the build is the tracer's
+  int depth = 0;
+  std::uint64_t hash = 0;
+  Quality quality;
+  std::array<TraceCounters, kRayKinds.size()> counters;
+};
+
 /// What is measured of a contender. All times have one entry a counted round.
 struct Record {
   std::string name;
@@ -30,15 +39,7 @@ struct Record {
   std::vector<double> build_ms;   ///< all that has to happen before the first ray
   std::array<std::vector<std::vector<double>>, kRayKinds.size()> trace_ms;  ///< [kind][way][round]
 
-  /// Of a kd-tree only.
-  struct OfTree {
-    std::vector<double> layout_ms;  ///< what of the build is the tracer's
-    int depth = 0;
-    std::uint64_t hash = 0;
-    Quality quality;
-    std::array<TraceCounters, kRayKinds.size()> counters;
-  };
-  std::optional<OfTree> tree;
+  std::optional<TreeRecord> tree;  ///< nothing for Embree
 
   /// Of Embree only: rays of each kind that hit here and miss in the trees, or the reverse.
   std::array<std::uint64_t, kRayKinds.size()> other_outcomes{};
