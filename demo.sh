@@ -59,7 +59,10 @@ say "3 of 4: drawing it"
 note "and out/heat.png (what each pixel costs), out/leaves.png (the tree's leaves, cut by a plane)"
 
 say "4 of 4: comparing it with trees of the surface-area heuristic"
-"$program" compare "$scene" --repeat 3 --json out/compare.json --svg out/compare.svg
+builders=realtime,paper-cyclic,paper-longest,sah-binned,sah-exact
+if "$program" info --json - | jq -e .embree >/dev/null; then builders+=,embree; fi
+"$program" compare "$scene" --builders "$builders" --size 512x512 --repeat 3 \
+  --json out/compare.json --svg out/compare.svg
 
 jq -n --slurpfile build out/build.json --slurpfile verify out/verify.json \
   --slurpfile render out/render.json --slurpfile heat out/heat.json \

@@ -115,8 +115,8 @@ $(query "$jq_functions"'(.build.stages | map(.time_ms) | max) as $most | .build.
 </div>
 
 <h2>Against the surface-area heuristic</h2>
-<p>The same rays through the trees of all builders; all find the same hits, to the bit. Embree&#8217;s hierarchy is not a
-kd-tree and stands here as a yardstick.</p>
+<p>The same rays through the trees of all builders, each kind the fastest way; all find the same hits, to the bit.
+Embree&#8217;s hierarchy is not a kd-tree and stands here as a yardstick.</p>
 <div class="scroll"><table>
 <tr><th>builder</th><th>build, ms</th><th>nodes</th><th>references a triangle</th><th>SAH cost</th><th>primary, Mray/s</th><th>shadow, Mray/s</th><th>diffuse, Mray/s</th></tr>
 $(query "$jq_functions"'.compare.builders[]

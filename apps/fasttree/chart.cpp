@@ -11,7 +11,8 @@ namespace fasttree::app {
 namespace {
 
 // Colours that stay apart for the colour-blind (Okabe and Ito).
-constexpr std::array kColours = {"#0072b2", "#56b4e9", "#e69f00", "#d55e00", "#999999"};
+constexpr std::array kColours = {"#0072b2", "#56b4e9", "#e69f00", "#d55e00",
+                                 "#999999", "#009e73", "#cc79a7"};
 
 std::string escaped(const std::string& text) {
   std::string result;

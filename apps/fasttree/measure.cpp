@@ -6,11 +6,8 @@
 #include <oneapi/tbb/parallel_reduce.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
-
-#include "inputs.h"
 
 namespace fasttree::app {
 namespace {
@@ -57,28 +54,35 @@ const char* to_string(RayKind kind) {
   return "unknown";
 }
 
-MeasuredRays make_measured_rays(const render::Camera& camera, std::uint32_t width,
-                                std::uint32_t height, const MeshView& mesh, const Box3& bounds,
-                                const Tracer& tracer) {
+MeasuredRays make_measured_rays(const render::Camera& camera, const RaySettings& settings,
+                                const MeshView& mesh, const Box3& bounds, const Tracer& tracer) {
+  constexpr std::uint32_t kTile = 8;
   MeasuredRays result;
+  const std::uint32_t width = settings.width, height = settings.height;
   const Vec3 forward = normalised(camera.target - camera.eye);
   Vec3 right = cross(forward, camera.up);
   if (dot(right, right) < 1e-12f) right = cross(forward, {1, 0, 0});
   if (dot(right, right) < 1e-12f) right = cross(forward, {0, 0, 1});
   right = normalised(right);
   const Vec3 up = cross(right, forward);
-  const float half_height = std::tan(camera.fov_degrees * kPi / 360.0f);
-  const float pixel = 2.0f * half_height / static_cast<float>(height);
+  const float half_side = std::tan(camera.fov_degrees * kPi / 360.0f);
+  const float pixel = 2.0f * half_side / static_cast<float>(std::min(width, height));
 
   auto& primary = result.rays[0];
-  primary.resize(std::size_t{width} * height);
-  for (std::uint32_t y = 0; y < height; ++y) {
-    for (std::uint32_t x = 0; x < width; ++x) {
-      const float u = (static_cast<float>(x) + 0.5f - 0.5f * static_cast<float>(width)) * pixel;
-      const float v = (0.5f * static_cast<float>(height) - static_cast<float>(y) - 0.5f) * pixel;
-      Ray& ray = primary[std::size_t{y} * width + x];
-      ray.origin = camera.eye;
-      ray.direction = forward + right * u + up * v;
+  primary.reserve(std::size_t{width} * height);
+  const auto add = [&](std::uint32_t x, std::uint32_t y) {
+    const float u = (static_cast<float>(x) + 0.5f - 0.5f * static_cast<float>(width)) * pixel;
+    const float v = (0.5f * static_cast<float>(height) - static_cast<float>(y) - 0.5f) * pixel;
+    Ray ray;
+    ray.origin = camera.eye;
+    ray.direction = forward + right * u + up * v;
+    primary.push_back(ray);
+  };
+  for (std::uint32_t top = 0; top < height; top += kTile) {
+    for (std::uint32_t left = 0; left < width; left += kTile) {
+      for (std::uint32_t y = top; y < std::min(top + kTile, height); ++y) {
+        for (std::uint32_t x = left; x < std::min(left + kTile, width); ++x) add(x, y);
+      }
     }
   }
   std::vector<Hit> hits(primary.size());
@@ -86,7 +90,8 @@ MeasuredRays make_measured_rays(const render::Camera& camera, std::uint32_t widt
 
   const Vec3 extent = bounds.extent();
   const float diagonal = std::sqrt(dot(extent, extent));
-  const Vec3 light = camera.eye + (right + up) * (0.25f * diagonal);
+  const Vec3 light = settings.light.value_or(camera.eye + (right + up) * (0.25f * diagonal));
+  result.light = light;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     if (!hits[i].hit()) continue;
     const auto [a, b, c] = mesh.triangle(hits[i].triangle);
@@ -106,20 +111,6 @@ MeasuredRays make_measured_rays(const render::Camera& camera, std::uint32_t widt
     result.rays[2].push_back(diffuse);
   }
   return result;
-}
-
-double time_rays(const RayCaster& caster, RayKind kind, const std::vector<Ray>& rays,
-                 Traced& traced) {
-  if (kind == RayKind::shadow) {
-    traced.flags.resize(rays.size());
-    const auto start = std::chrono::steady_clock::now();
-    caster.occluded(rays, traced.flags);
-    return milliseconds_since(start);
-  }
-  traced.hits.resize(rays.size());
-  const auto start = std::chrono::steady_clock::now();
-  caster.closest(rays, traced.hits);
-  return milliseconds_since(start);
 }
 
 TraceCounters count_rays(const Tracer& tracer, RayKind kind, const std::vector<Ray>& rays) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays to measure tracing with, and how fast and at what cost something traces them.
+// Rays to measure tracing with, and what they cost in steps and tests.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <functional>
-#include <span>
+#include <optional>
 #include <vector>
 
 #include "fasttree/mesh.h"
@@ -26,31 +25,24 @@ const char* to_string(RayKind kind);
 /// The same rays for everything that is compared.
 struct MeasuredRays {
   std::array<std::vector<Ray>, kRayKinds.size()> rays;
+  Vec3 light;  ///< where the shadow rays end
 
   const std::vector<Ray>& of(RayKind kind) const { return rays[static_cast<std::size_t>(kind)]; }
 };
 
-/// One ray through each pixel's middle, and one shadow and one diffuse ray from each hit. Depends
-/// on nothing but its arguments: all tracers find the same hits.
-MeasuredRays make_measured_rays(const render::Camera& camera, std::uint32_t width,
-                                std::uint32_t height, const MeshView& mesh, const Box3& bounds,
-                                const Tracer& tracer);
-
-/// Something that traces. Both functions are called from many threads.
-struct RayCaster {
-  std::function<void(std::span<const Ray>, std::span<Hit>)> closest;
-  std::function<void(std::span<const Ray>, std::span<std::uint8_t>)> occluded;
+/// Where the rays come from.
+struct RaySettings {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::optional<Vec3> light;  ///< none: beside the camera, above and to the right
 };
 
-/// Results of one kind, to be compared with those of another tracer.
-struct Traced {
-  std::vector<Hit> hits;
-  std::vector<std::uint8_t> flags;
-};
-
-/// Milliseconds for all rays of a kind on the threads of the calling arena.
-double time_rays(const RayCaster& caster, RayKind kind, const std::vector<Ray>& rays,
-                 Traced& traced);
+/// One ray through each pixel's middle, and one shadow and one diffuse ray from each hit. The
+/// pixels come in tiles of 8 x 8, so that 64 neighbours in the array are neighbours in the picture;
+/// where the picture ends within a tile, the tile is smaller. The other rays follow the order of
+/// the hits. Depends on nothing but its arguments: all tracers find the same hits.
+MeasuredRays make_measured_rays(const render::Camera& camera, const RaySettings& settings,
+                                const MeshView& mesh, const Box3& bounds, const Tracer& tracer);
 
 /// Steps and tests of all rays of a kind.
 TraceCounters count_rays(const Tracer& tracer, RayKind kind, const std::vector<Ray>& rays);

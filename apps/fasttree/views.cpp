@@ -12,16 +12,15 @@
 namespace fasttree::app {
 namespace {
 
-/// Rooms are looked at from inside, everything else from a corner. Only procedural scenes say what
-/// they are.
-render::View view_for(const std::string& spec) {
+/// Rooms are looked at from inside. Only procedural scenes say what they are.
+render::View view_for(const std::string& spec, render::View otherwise) {
   for (const scene::ProceduralInfo& info : scene::procedural_scenes()) {
     const std::string name = std::string("scene:") + info.name;
     if (info.interior && (spec == name || spec.starts_with(name + ":"))) {
       return render::View::inside;
     }
   }
-  return render::View::corner;
+  return otherwise;
 }
 
 }  // namespace
@@ -41,8 +40,9 @@ void CameraOptions::declare(Options& options) {
 }
 
 render::Camera CameraOptions::choose(const std::string& spec, const Box3& bounds,
-                                     const Tracer& tracer) const {
-  render::Camera camera = automatic_camera(bounds, view.value_or(view_for(spec)), tracer);
+                                     const Tracer& tracer, render::View otherwise) const {
+  render::Camera camera =
+      automatic_camera(bounds, view.value_or(view_for(spec, otherwise)), tracer);
   if (eye) camera.eye = *eye;
   if (target) {
     camera.target = *target;

@@ -21,7 +21,9 @@ struct CameraOptions {
 
   void declare(Options& options);
   /// The view's camera, with what the options say of it by hand put in. `spec` is the scene's.
-  render::Camera choose(const std::string& spec, const Box3& bounds, const Tracer& tracer) const;
+  /// Without --view, rooms are looked at from inside and all else as `otherwise` says.
+  render::Camera choose(const std::string& spec, const Box3& bounds, const Tracer& tracer,
+                        render::View otherwise = render::View::corner) const;
 };
 
 nlohmann::ordered_json json_of(const render::Camera& camera);

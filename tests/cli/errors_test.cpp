@@ -49,6 +49,11 @@ TEST(CliErrors, WrongUsageIsAnsweredWithTheRightOne) {
       {{"render", "scene:knot:100", "--out", "x.png", "--fov", "180"}, "179"},
       {{"render", "scene:knot:100", "--out", "x.png", "--flat", "--smooth"}, "--smooth"},
       {{"compare", "scene:knot:100", "--builders", "paper-cyclical"}, "did you mean paper-cyclic"},
+      {{"compare", "scene:knot:100", "--builders", "realtime,embree-lo"},
+       "did you mean embree-low"},
+      {{"compare", "scene:knot:100", "--profile", "realtme"}, "did you mean realtime"},
+      {{"compare", "scene:knot:100", "--profile", "paper", "--builders", "realtime"}, "not both"},
+      {{"compare", "scene:knot:100", "--light", "1,2"}, "three numbers"},
       {{"verify", "scene:knot:100", "--mesh", "scene:knot:100"}, "tree file"},
       {{"build", "scene:knto:100"}, "knot"},
   };

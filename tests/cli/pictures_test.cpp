@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fasttree render and compare.
+// fasttree render.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -61,34 +61,6 @@ TEST(CliRender, DrawsFromATreeFile) {
   EXPECT_EQ(
       run({"render", tree, "--mesh", "scene:knot:3000", "--out", folder.path("q.png")}).exit_code,
       3);
-}
-
-TEST(CliCompare, MeasuresAllBuilders) {
-  const Folder folder;
-  const auto json = run_json({"compare", "scene:knot:2000", "--repeat", "2", "--size", "64x64",
-                              "--csv", folder.path("c.csv"), "--svg", folder.path("c.svg")});
-  EXPECT_EQ(json["same_hits"], true);
-  EXPECT_GE(json["builders"].size(), 4u);
-  for (const auto& builder : json["builders"]) {
-    EXPECT_EQ(builder["build_ms_all"].size(), 2u);
-    for (const char* kind : {"primary", "shadow", "diffuse"}) {
-      EXPECT_GT(builder[kind]["mrays_per_s"], 0.0) << builder["builder"] << kind;
-    }
-    if (builder["builder"] != "embree") {
-      EXPECT_GT(builder["primary"]["triangle_tests_per_ray"], 0.0);
-    }
-  }
-  EXPECT_EQ(read_file(folder.path("c.csv")).rfind("builder,", 0), 0u);
-  const std::string svg = read_file(folder.path("c.svg"));
-  EXPECT_EQ(svg.rfind("<svg", 0), 0u);
-  EXPECT_NE(svg.find("sah-exact"), std::string::npos);
-}
-
-TEST(CliCompare, MeasuresTheBuildersAskedFor) {
-  const auto json = run_json({"compare", "scene:knot:500", "--repeat", "1", "--size", "16x16",
-                              "--builders", "sah-exact,paper-longest"});
-  ASSERT_EQ(json["builders"].size(), 2u);
-  EXPECT_EQ(json["builders"][0]["builder"], "sah-exact");
 }
 
 }  // namespace
