@@ -12,14 +12,14 @@ namespace fasttree {
 
 struct RealtimeRule {
   /// k of the top grid: D0 is at most ceil(log2 N) + k, at least 0.
-  int top_extra_depth = -4;
+  int top_extra_depth = -2;
   /// The top grid has at most this many references a triangle.
   double top_growth = 3.0;
 
   /// A list of at most this many triangles is a leaf.
-  std::uint32_t leaf_size = 40;
+  std::uint32_t leaf_size = 160;
   /// A layer over n triangles has at most ceil(log2 n) + this many levels ...
-  int layer_extra_depth = -2;
+  int layer_extra_depth = -3;
   /// ... and at most this many: its cells' counters have to stay in the first-level cache.
   int layer_most_depth = 9;
   /// A layer's boxes reach into at most this many cells a triangle ...

@@ -2,6 +2,7 @@
 // Compiled once for every instruction set by Highway's foreach_target.
 #include "trace/leaf_triangles.h"
 
+#include <hwy/cache_control.h>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -16,7 +17,9 @@ namespace HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
 
-Box3 CopyTriangles(const MeshView& mesh, std::span<const std::uint32_t> ids, float* rows) {
+Box3 CopyTriangles(const MeshView& mesh, std::span<const std::uint32_t> all, std::uint32_t first,
+                   std::uint32_t count, float* rows) {
+  const std::span<const std::uint32_t> ids = all.subspan(first, count);
   Box3 box;
   for (std::size_t i = 0; i < ids.size(); ++i) {
     for (std::uint32_t c = 0; c < 3; ++c) {
@@ -31,6 +34,10 @@ Box3 CopyTriangles(const MeshView& mesh, std::span<const std::uint32_t> ids, flo
 #else
 
 namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr std::size_t kIndicesAhead = 32;
+constexpr std::size_t kPositionsAhead = 16;
+
 using D4 = hn::FixedTag<float, 4>;
 using V4 = hn::Vec<D4>;
 
@@ -47,7 +54,9 @@ HWY_INLINE void transpose(V4 a, V4 b, V4 c, V4 d, V4& x, V4& y, V4& z) {
   z = hn::BitCast(d4, hn::InterleaveLower(d2, hn::BitCast(d2, ab_z), hn::BitCast(d2, cd_z)));
 }
 
-Box3 CopyTriangles(const MeshView& mesh, std::span<const std::uint32_t> ids, float* rows) {
+Box3 CopyTriangles(const MeshView& mesh, std::span<const std::uint32_t> all, std::uint32_t first,
+                   std::uint32_t count, float* rows) {
+  const std::span<const std::uint32_t> ids = all.subspan(first, count);
   const D4 d4;
   const std::size_t n = ids.size();
   auto lo = hn::Set(d4, std::numeric_limits<float>::infinity());
@@ -64,8 +73,21 @@ Box3 CopyTriangles(const MeshView& mesh, std::span<const std::uint32_t> ids, flo
     return hn::LoadU(d4, reinterpret_cast<const float*>(
                              positions + vertex * mesh.position_stride_bytes));
   };
+  // What the next leaves need is asked for early: they are the next ids.
+  const auto fetch_ahead = [&](std::size_t reference) HWY_ATTR {
+    if (mesh.indices != nullptr && reference + kIndicesAhead < all.size()) {
+      hwy::Prefetch(mesh.indices + std::size_t{3} * all[reference + kIndicesAhead]);
+    }
+    if (reference + kPositionsAhead < all.size()) {
+      for (std::uint32_t c = 0; c < 3; ++c) {
+        const std::uint32_t vertex = mesh.vertex_index(all[reference + kPositionsAhead], c);
+        hwy::Prefetch(positions + vertex * mesh.position_stride_bytes);
+      }
+    }
+  };
   std::size_t i = 0;
   for (; i + 4 <= n; i += 4) {
+    for (std::size_t k = 0; k < 4; ++k) fetch_ahead(first + i + k);
     for (std::uint32_t c = 0; c < 3; ++c) {
       const auto p0 = position(mesh.vertex_index(ids[i], c));
       const auto p1 = position(mesh.vertex_index(ids[i + 1], c));
@@ -81,6 +103,7 @@ Box3 CopyTriangles(const MeshView& mesh, std::span<const std::uint32_t> ids, flo
     }
   }
   for (; i < n; ++i) {
+    fetch_ahead(first + i);
     for (std::uint32_t c = 0; c < 3; ++c) {
       const auto p = position(mesh.vertex_index(ids[i], c));
       lo = hn::Min(lo, p);
@@ -107,8 +130,8 @@ namespace fasttree {
 
 HWY_EXPORT(CopyTriangles);
 
-Box3 LeafTriangles::operator()(std::span<const std::uint32_t> ids, float* rows) const {
-  return HWY_DYNAMIC_DISPATCH(CopyTriangles)(mesh_, ids, rows);
+Box3 LeafTriangles::operator()(std::uint32_t first, std::uint32_t count, float* rows) const {
+  return HWY_DYNAMIC_DISPATCH(CopyTriangles)(mesh_, ids_, first, count, rows);
 }
 
 }  // namespace fasttree

@@ -12,13 +12,16 @@ namespace fasttree {
 
 class LeafTriangles {
  public:
-  explicit LeafTriangles(const MeshView& mesh) : mesh_(mesh) {}
+  LeafTriangles(const MeshView& mesh, std::span<const std::uint32_t> ids)
+      : mesh_(mesh), ids_(ids) {}
 
-  /// Writes rows of ids.size() values each (see WideLayout::triangles) and returns the box.
-  Box3 operator()(std::span<const std::uint32_t> ids, float* rows) const;
+  /// Writes the triangles ids[first ... first + count - 1] in rows of `count` values each (see
+  /// WideLayout::triangles) and returns the box round them.
+  Box3 operator()(std::uint32_t first, std::uint32_t count, float* rows) const;
 
  private:
   MeshView mesh_;
+  std::span<const std::uint32_t> ids_;
 };
 
 }  // namespace fasttree

@@ -7,10 +7,14 @@
 #define FASTTREE_TRACE_WIDE_KERNELS_INL_H_
 #endif
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
 #include <hwy/highway.h>
+
+#include "geometry/triangle_intersection.h"
+#include "trace/wide_layout.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fasttree {
@@ -67,6 +71,48 @@ HWY_INLINE hn::Mask<DF> NotRuledOut(const Sheared& s) {
   const auto negative = hn::Lt(hn::Min(hn::Min(u, v), w), hn::Neg(margin));
   const auto positive = hn::Gt(hn::Max(hn::Max(u, v), w), margin);
   return hn::Not(hn::And(negative, positive));
+}
+
+// One ray against the triangles of a leaf, whole vectors of them at a time: calls hit(reference,
+// t, u, v) for each that the exact test accepts, with t_best() asked before. hit() returns true to
+// end it; so does this function then.
+template <typename Best, typename Accept>
+HWY_INLINE bool ForEachHit(const WideLayout& layout, std::uint32_t first, std::uint32_t n,
+                           const ShearedRay& r, float t_min, const Best& t_best,
+                           const Accept& hit) {
+  const DF d;
+  const float* const rows = layout.triangles_of(first);
+  const std::size_t kx = std::size_t{r.kx} * n, ky = std::size_t{r.ky} * n,
+                    kz = std::size_t{r.kz} * n, corner = std::size_t{3} * n;
+  const float ox = r.origin[r.kx], oy = r.origin[r.ky], oz = r.origin[r.kz];
+  const VF vox = hn::Set(d, ox), voy = hn::Set(d, oy), voz = hn::Set(d, oz);
+  const VF sx = hn::Set(d, r.sx), sy = hn::Set(d, r.sy);
+  for (std::uint32_t i = 0; i < n; i += static_cast<std::uint32_t>(hn::Lanes(d))) {
+    Sheared q;
+    const auto shear_corner = [&](const float* p, VF& x, VF& y) HWY_ATTR {
+      const VF z = hn::Sub(hn::LoadU(d, p + kz), voz);
+      x = hn::Sub(hn::Sub(hn::LoadU(d, p + kx), vox), hn::Mul(sx, z));
+      y = hn::Sub(hn::Sub(hn::LoadU(d, p + ky), voy), hn::Mul(sy, z));
+    };
+    shear_corner(rows + i, q.ax, q.ay);
+    shear_corner(rows + corner + i, q.bx, q.by);
+    shear_corner(rows + 2 * corner + i, q.cx, q.cy);
+    std::uint32_t candidates = BitsOf(d, NotRuledOut(q));
+    if (n - i < hn::Lanes(d)) candidates &= (1u << (n - i)) - 1;
+    for (; candidates != 0; candidates &= candidates - 1) {
+      const std::uint32_t j = i + static_cast<std::uint32_t>(std::countr_zero(candidates));
+      const auto moved = [&](std::size_t c) {
+        const float* const p = rows + c * corner + j;
+        return Vec3{p[kx] - ox, p[ky] - oy, p[kz] - oz};
+      };
+      float t, u, v;
+      if (intersect_moved(r, t_min, t_best(), moved(0), moved(1), moved(2), t, u, v) &&
+          hit(first + j, t, u, v)) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 // Nibbles of a node's children from back to front for an octant: the order itself of the opposite

@@ -34,7 +34,7 @@ float half_area(const Box3& box) {
 class LayoutMaker {
  public:
   LayoutMaker(const Tree& tree, const MeshView& mesh, WideLayout& layout)
-      : nodes_(tree.nodes()), layout_(layout), fill_(mesh) {}
+      : nodes_(tree.nodes()), layout_(layout), fill_(mesh, tree.ids()) {}
 
   std::uint32_t nodes_used() const { return next_; }
 
@@ -167,8 +167,7 @@ class LayoutMaker {
 
   Box3 make_leaf(std::uint32_t first, std::uint32_t count, const Box3& cell) {
     if (count == 0) return {};
-    Box3 box = fill_(layout_.ids.subspan(first, count),
-                     layout_.triangles.data() + std::size_t{kTriangleRows} * first);
+    Box3 box = fill_(first, count, layout_.triangles.data() + std::size_t{kTriangleRows} * first);
     for (std::size_t a = 0; a < 3; ++a) {
       // Where nothing of a triangle's box is in the cell (a touch), the box is the touched side.
       box.lo[a] = std::min(std::max(box.lo[a], cell.lo[a]), cell.hi[a]);

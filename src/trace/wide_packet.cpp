@@ -230,12 +230,54 @@ HWY_INLINE void TestTriangle(const float* corner_a, std::size_t n, std::uint32_t
   }
 }
 
+// One ray of a packet against all triangles of a leaf.
+template <bool kAny>
+HWY_INLINE void TestRay(const WideLayout& layout, std::uint32_t first, std::uint32_t n,
+                        std::size_t i, Packet& p) {
+  ShearedRay r;
+  r.origin = {p.rays.origin[0][i], p.rays.origin[1][i], p.rays.origin[2][i]};
+  r.kx = p.k[0];
+  r.ky = p.k[1];
+  r.kz = p.k[2];
+  r.sx = p.rays.sx[i];
+  r.sy = p.rays.sy[i];
+  r.sz = p.rays.sz[i];
+  ForEachHit(
+      layout, first, n, r, p.rays.t_min[i], [&] { return p.rays.t[i]; },
+      [&](std::uint32_t reference, float t, float u, float v) {
+        if (kAny) {
+          p.alive &= ~(std::uint64_t{1} << i);
+          return true;
+        }
+        const std::uint32_t id = layout.ids[reference];
+        if (t < p.rays.t[i] || id < p.id[i]) {
+          p.rays.t[i] = t;
+          p.id[i] = id;
+          p.u[i] = u;
+          p.v[i] = v;
+        }
+        return false;
+      });
+}
+
+// Vectors of a packet that hold some of these rays.
+HWY_INLINE std::uint32_t VectorsOf(std::uint64_t rays) {
+  const DF d;
+  std::uint32_t vectors = 0;
+  const std::uint64_t all = (std::uint64_t{1} << hn::Lanes(d)) - 1;
+  for (std::size_t i = 0; i < kPacket; i += hn::Lanes(d)) vectors += (rays >> i & all) != 0;
+  return vectors;
+}
+
 template <bool kAny>
 HWY_INLINE void TestLeaf(const WideLayout& layout, std::uint32_t first, std::uint32_t n,
                          std::uint64_t rays, const PacketBounds& b, Packet& p) {
   const DF d;
+  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
   const float* const rows = layout.triangles_of(first);
-  for (std::uint32_t i = 0; i < n; i += static_cast<std::uint32_t>(hn::Lanes(d))) {
+  HWY_ALIGN std::uint32_t left[(kMostInLeaf + 3) / 4];
+  std::uint32_t survivors = 0;
+  for (std::uint32_t i = 0, k = 0; i < n; i += lanes, ++k) {
     const auto row = [&](std::size_t c, std::size_t a) HWY_ATTR {
       return hn::LoadU(d, rows + (3 * c + a) * n + i);
     };
@@ -243,10 +285,22 @@ HWY_INLINE void TestLeaf(const WideLayout& layout, std::uint32_t first, std::uin
         b, p.octant, b.near_origin_scene, b.far_origin_scene,
         [&](std::size_t a) HWY_ATTR { return hn::Min(hn::Min(row(0, a), row(1, a)), row(2, a)); },
         [&](std::size_t a) HWY_ATTR { return hn::Max(hn::Max(row(0, a), row(1, a)), row(2, a)); });
-    std::uint32_t left = BitsOf(d, hn::Le(t.enter, t.leave));
-    if (n - i < hn::Lanes(d)) left &= (1u << (n - i)) - 1;
-    for (; left != 0; left &= left - 1) {
-      const std::uint32_t j = i + static_cast<std::uint32_t>(std::countr_zero(left));
+    left[k] = BitsOf(d, hn::Le(t.enter, t.leave));
+    if (n - i < lanes) left[k] &= (1u << (n - i)) - 1;
+    survivors += static_cast<std::uint32_t>(std::popcount(left[k]));
+  }
+  // Many small triangles for few rays: ray by ray; else triangle by triangle.
+  const std::uint32_t by_ray =
+      static_cast<std::uint32_t>(std::popcount(rays)) * ((n + lanes - 1) / lanes);
+  if (by_ray < survivors * VectorsOf(rays)) {
+    for (; rays != 0; rays &= rays - 1) {
+      TestRay<kAny>(layout, first, n, static_cast<std::size_t>(std::countr_zero(rays)), p);
+    }
+    return;
+  }
+  for (std::uint32_t i = 0, k = 0; i < n; i += lanes, ++k) {
+    for (std::uint32_t bits = left[k]; bits != 0; bits &= bits - 1) {
+      const std::uint32_t j = i + static_cast<std::uint32_t>(std::countr_zero(bits));
       TestTriangle<kAny>(rows + j, n, layout.ids[first + j], kAny ? rays & p.alive : rays, p);
       if (kAny && p.alive == 0) return;
     }
@@ -333,11 +387,79 @@ HWY_INLINE float ThicknessOf(const Packet& p, const Box3& bounds) {
   return 1.25f * kWideThickness * reach;
 }
 
+// Whether a whole packet misses the scene, from the ranges of origins and directions alone: most
+// packets of a picture may. Says no where in doubt. A ray that is not valid misses anyway.
+HWY_INLINE bool AllMiss(const Ray* rays, const Box3& bounds) {
+  const DF d;
+  const float* const in = reinterpret_cast<const float*>(rays);
+  // Vectors of whole rays: lanes with one place in a ray are reduced in the end.
+  constexpr std::size_t kFloats = 8;
+  VF least[2], most[2];
+  const std::size_t lanes = hn::Lanes(d);
+  const std::size_t step = std::max(lanes, kFloats);
+  const std::size_t parts = step / lanes;
+  for (std::size_t q = 0; q < parts; ++q) least[q] = most[q] = hn::LoadU(d, in + q * lanes);
+  for (std::size_t i = step; i < kPacket * kFloats; i += step) {
+    for (std::size_t q = 0; q < parts; ++q) {
+      const VF x = hn::LoadU(d, in + i + q * lanes);
+      least[q] = hn::Min(least[q], x);
+      most[q] = hn::Max(most[q], x);
+    }
+  }
+  HWY_ALIGN float lo[16];
+  HWY_ALIGN float hi[16];
+  for (std::size_t q = 0; q < parts; ++q) {
+    hn::Store(least[q], d, lo + q * lanes);
+    hn::Store(most[q], d, hi + q * lanes);
+  }
+  for (std::size_t k = kFloats; k < step; ++k) {
+    lo[k - kFloats] = std::min(lo[k - kFloats], lo[k]);
+    hi[k - kFloats] = std::max(hi[k - kFloats], hi[k]);
+  }
+  // Places: origin, t_min, direction, t_max.
+  float enter = lo[3], leave = hi[7];
+  float reach = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    reach = std::max({reach, bounds.hi[a] - lo[a], hi[a] - bounds.lo[a]});
+  }
+  if (!(reach > 0x1p-40f && reach < 0x1p40f)) return false;
+  for (std::size_t a = 0; a < 3; ++a) {
+    float d0 = lo[4 + a], d1 = hi[4 + a], o0 = lo[a], o1 = hi[a];
+    float b0 = bounds.lo[a], b1 = bounds.hi[a];
+    if (d1 < 0) {  // as if it went up
+      std::swap(d0, d1);
+      d0 = -d0;
+      d1 = -d1;
+      std::swap(o0, o1);
+      o0 = -o0;
+      o1 = -o1;
+      std::swap(b0, b1);
+      b0 = -b0;
+      b1 = -b1;
+    }
+    if (!(d0 > 0x1p-40f && d1 < 0x1p40f)) continue;  // both ways, or hardly any
+    const float slack = 2 * kWideThickness * reach;
+    const float near = b0 - o1 - slack, far = b1 - o0 + slack;
+    enter = std::max(enter, near > 0 ? near / d1 : near / d0);
+    leave = std::min(leave, far > 0 ? far / d0 : far / d1);
+  }
+  // A little more than rounding could do to the quotients.
+  return enter > leave + 0x1p-20f * std::fabs(leave);
+}
+
 template <bool kAny>
 void TracePackets(const WideScene& scene, const WideBatch& batch) {
   const DU du;
   Packet p;
   for (std::size_t begin = 0; begin < batch.rays.size(); begin += kPacket) {
+    if (begin + kPacket <= batch.rays.size() && AllMiss(&batch.rays[begin], scene.bounds)) {
+      if (kAny) {
+        std::fill_n(batch.flags.data() + begin, kPacket, std::uint8_t{0});
+      } else {
+        std::fill_n(batch.hits.data() + begin, kPacket, Hit{});
+      }
+      continue;
+    }
     std::uint64_t left = PrepareBlock(scene, batch, begin, kAny, p.rays);
     if (!kAny && left != 0) {
       std::fill_n(p.id, kPacket, kNoTriangle);

@@ -69,46 +69,20 @@ HWY_INLINE void Visit(const WideNode* nodes, std::uint32_t index, RayState& s) {
 template <bool kAny>
 HWY_INLINE bool TestLeaf(const WideLayout& layout, std::uint32_t first, std::uint32_t n,
                          RayState& s) {
-  const DF d;
-  const float* const rows = layout.triangles_of(first);
-  const ShearedRay& r = s.sheared;
-  const std::size_t kx = std::size_t{r.kx} * n, ky = std::size_t{r.ky} * n,
-                    kz = std::size_t{r.kz} * n, corner = std::size_t{3} * n;
-  const float ox = r.origin[r.kx], oy = r.origin[r.ky], oz = r.origin[r.kz];
-  const VF vox = hn::Set(d, ox), voy = hn::Set(d, oy), voz = hn::Set(d, oz);
-  const VF sx = hn::Set(d, r.sx), sy = hn::Set(d, r.sy);
-  for (std::uint32_t i = 0; i < n; i += static_cast<std::uint32_t>(hn::Lanes(d))) {
-    Sheared q;
-    const auto shear_corner = [&](const float* p, VF& x, VF& y) HWY_ATTR {
-      const VF z = hn::Sub(hn::LoadU(d, p + kz), voz);
-      x = hn::Sub(hn::Sub(hn::LoadU(d, p + kx), vox), hn::Mul(sx, z));
-      y = hn::Sub(hn::Sub(hn::LoadU(d, p + ky), voy), hn::Mul(sy, z));
-    };
-    shear_corner(rows + i, q.ax, q.ay);
-    shear_corner(rows + corner + i, q.bx, q.by);
-    shear_corner(rows + 2 * corner + i, q.cx, q.cy);
-    std::uint32_t candidates = BitsOf(d, NotRuledOut(q));
-    if (n - i < hn::Lanes(d)) candidates &= (1u << (n - i)) - 1;
-    for (; candidates != 0; candidates &= candidates - 1) {
-      const std::uint32_t j = i + static_cast<std::uint32_t>(std::countr_zero(candidates));
-      const auto moved = [&](std::size_t c) {
-        const float* const p = rows + c * corner + j;
-        return Vec3{p[kx] - ox, p[ky] - oy, p[kz] - oz};
-      };
-      float t, u, v;
-      if (!intersect_moved(r, s.t_min, s.t_best, moved(0), moved(1), moved(2), t, u, v)) continue;
-      if (kAny) {
-        s.best.triangle = 0;
-        return true;
-      }
-      const std::uint32_t id = layout.ids[first + j];
-      if (t < s.best.t || id < s.best.triangle) {
-        s.best = {t, id, u, v};
-        s.t_best = t;
-      }
-    }
-  }
-  return false;
+  return ForEachHit(
+      layout, first, n, s.sheared, s.t_min, [&] { return s.t_best; },
+      [&](std::uint32_t reference, float t, float u, float v) {
+        if (kAny) {
+          s.best.triangle = 0;
+          return true;
+        }
+        const std::uint32_t id = layout.ids[reference];
+        if (t < s.best.t || id < s.best.triangle) {
+          s.best = {t, id, u, v};
+          s.t_best = t;
+        }
+        return false;
+      });
 }
 
 // One entry of the stack. False: the ray is done.
