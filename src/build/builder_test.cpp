@@ -167,6 +167,7 @@ TEST(Builder, RefusesSettingsThatCannotBe) {
     settings.depth = 31;
     EXPECT_EQ(builder.build(owned.view(), settings).status().code(), StatusCode::invalid_argument);
     settings.depth = kAutoDepth;
+    settings.profile = Profile::paper;
     settings.max_growth = 0.5;
     EXPECT_EQ(builder.build(owned.view(), settings).status().code(), StatusCode::invalid_argument);
   }
