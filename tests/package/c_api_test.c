@@ -125,7 +125,7 @@ static void test_build(ft_builder* builder, const ft_mesh* mesh) {
   EXPECT(info.struct_size == sizeof info);
   EXPECT(info.triangle_count == kTriangles);
   EXPECT(info.node_count == 2 * info.leaf_count - 1);
-  EXPECT(info.bits[0] + info.bits[1] + info.bits[2] == info.depth && info.depth > 0);
+  EXPECT(info.bits[0] + info.bits[1] + info.bits[2] == info.depth && info.depth == 0);
   EXPECT(info.bounds_lo[0] == 0 && info.bounds_hi[1] == 1 && info.bounds_lo[2] < 0);
   EXPECT(ft_tree_get_nodes(tree, &words) == FT_OK);
   EXPECT(ft_tree_get_ids(tree, &ids) == FT_OK);
