@@ -43,7 +43,7 @@ Scanning Repository): free for research, with credit; no commercial use without 
   fi
 fi
 
-say "1 of 4: building its kd-tree, by the paper's six steps"
+say "1 of 4: building its kd-tree"
 "$program" build "$scene" --repeat 5 --out out/tree.ft --json out/build.json
 
 say "2 of 4: proving it right"

@@ -30,7 +30,7 @@ class BuildCommand : public Command {
            "trees\n"
            "have equal hashes, for any number of threads and any instruction set.\n\n"
            "Example:\n"
-           "  fasttree build bunny.ply --axes longest --out bunny.ft --json figures.json";
+           "  fasttree build bunny.ply --out bunny.ft --json figures.json";
   }
 
   void declare(Options& options) override {

@@ -46,9 +46,9 @@ void BuildOptions::declare(Options& options) {
   options.choice(settings.profile, "--profile", "Builder", profiles());
   options.choice(settings.axes, "--axes", "Which axis each level halves (profile paper)",
                  axis_schedules());
-  options.depth(settings.depth, "--depth", "Levels of the grid (profile paper)", 30);
+  options.depth(settings.depth, "--depth", "Levels of the (top) grid (profiles realtime and paper)", 30);
   options.choice(settings.implementation, "--implementation",
-                 "Parallel, or the paper's six steps literally (profile paper)",
+                 "Parallel, or the definition literally (profiles realtime and paper)",
                  Choices<Implementation>{{"fast", Implementation::fast},
                                          {"reference", Implementation::reference}});
   options.choice(settings.simd, "--simd", "Instruction set",

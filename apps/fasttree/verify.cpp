@@ -50,7 +50,7 @@ class VerifyCommand : public Command {
            "    More than half of the rays are made to meet planes, edges, vertices and corners\n"
            "    exactly. Oracle auto is brute force where that takes half a minute or so.\n\n"
            "Example:\n"
-           "  fasttree verify bunny.ply --axes longest --rays 100000\n"
+           "  fasttree verify bunny.ply --rays 100000\n"
            "  fasttree verify bunny.ft --mesh bunny.ply";
   }
 

@@ -27,24 +27,27 @@ enum class Simd : std::uint8_t {
 /// How a profile is carried out. All of them write the same bytes.
 enum class Implementation : std::uint8_t {
   fast = 0,       ///< parallel, vectorised
-  reference = 1,  ///< the paper's six steps literally, scalar, one thread (profile paper only)
+  reference = 1,  ///< the definition literally, scalar, one thread (paper and realtime)
 };
 
 inline constexpr int kAutoDepth = -1;
 
 /// How to build. Every field has the default a newcomer wants.
 struct BuildSettings {
-  Profile profile = Profile::paper;
+  Profile profile = Profile::realtime;
+
+  /// Profile paper only: realtime always has `longest`.
   AxisSchedule axes = AxisSchedule::cyclic;
 
   /// D, the levels of the grid (0 to 30), or kAutoDepth for the rule in docs/grid.md. A grid with
-  /// fewer levels than asked (dead axes; 15 bits an axis) uses all it has. Morton profiles only.
+  /// fewer levels than asked (dead axes; 15 bits an axis) uses all it has. Profile realtime: of its
+  /// top grid, with the rule in docs/realtime.md. The other profiles have no grid.
   int depth = kAutoDepth;
 
-  /// k of the rule: D is at most ceil(log2 N) + k.
+  /// k of the rule: D is at most ceil(log2 N) + k. Profile paper only.
   int extra_depth = 1;
 
-  /// The rule keeps M(D) at or under this many references a triangle.
+  /// The rule keeps M(D) at or under this many references a triangle. Profile paper only.
   double max_growth = 6.0;
 
   /// Bytes the builder may hold at once, its result included; 0: no limit. Checked against M(D)

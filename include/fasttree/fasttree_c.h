@@ -77,7 +77,7 @@ typedef enum ft_axis_schedule {
 
 typedef enum ft_implementation {
   FT_IMPLEMENTATION_FAST = 0,     /* parallel, vectorised */
-  FT_IMPLEMENTATION_REFERENCE = 1 /* the steps literally, one thread; FT_PROFILE_PAPER only */
+  FT_IMPLEMENTATION_REFERENCE = 1 /* the definition literally, one thread; FT_PROFILE_PAPER and _REALTIME */
 } ft_implementation;
 
 typedef enum ft_simd {
@@ -95,9 +95,9 @@ typedef struct ft_build_settings {
   size_t struct_size;
   uint32_t profile;            /* ft_profile */
   uint32_t axes;               /* ft_axis_schedule; FT_PROFILE_PAPER only */
-  int32_t depth;               /* levels of the grid, 0 to 30, or FT_AUTO_DEPTH */
-  int32_t extra_depth;         /* automatic depth: at most ceil(log2 N) + this */
-  double max_growth;           /* automatic depth: at most this many references a triangle */
+  int32_t depth;               /* levels of the (top) grid, 0 to 30, or FT_AUTO_DEPTH */
+  int32_t extra_depth;         /* automatic depth: at most ceil(log2 N) + this; paper only */
+  double max_growth;           /* the same: at most this many references a triangle */
   uint64_t memory_limit_bytes; /* that the builder may hold at once, result included; 0: no limit */
   double sah_traversal_cost;   /* of the surface-area-heuristic profiles, arbitrary units */
   double sah_intersection_cost;
@@ -111,8 +111,8 @@ typedef struct ft_build_settings {
 
 #define FT_BUILD_SETTINGS_INIT                                                                   \
   {                                                                                              \
-    sizeof(ft_build_settings), FT_PROFILE_PAPER, FT_AXES_CYCLIC, FT_AUTO_DEPTH, 1, 6.0, 0, 15.0, \
-        20.0, FT_IMPLEMENTATION_FAST, FT_SIMD_WIDEST, 0, 0, NULL, NULL                           \
+    sizeof(ft_build_settings), FT_PROFILE_REALTIME, FT_AXES_CYCLIC, FT_AUTO_DEPTH, 1, 6.0, 0,    \
+        15.0, 20.0, FT_IMPLEMENTATION_FAST, FT_SIMD_WIDEST, 0, 0, NULL, NULL                     \
   }
 
 /* What the last build did. */

@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <cmath>
+#include <vector>
 
 #include "fasttree/build.h"
 #include "fasttree/verify.h"
@@ -12,6 +13,11 @@
 
 namespace fasttree {
 namespace {
+
+const std::vector<Profile> kProfiles{Profile::paper, Profile::realtime, Profile::sah_exact,
+                                     Profile::sah_binned};
+// Those with a grid, and with two implementations.
+const std::vector<Profile> kGridProfiles{Profile::paper, Profile::realtime};
 
 void expect_same_bytes(const Tree& a, const Tree& b) {
   EXPECT_EQ(a.info(), b.info());
@@ -40,6 +46,7 @@ TEST(Builder, WritesTheReferencesBytesForEveryThreadCountAndInstructionSet) {
       for (const int depth : {kAutoDepth, 0, 9}) {
         SCOPED_TRACE(name + " " + to_string(axes) + " " + std::to_string(depth));
         BuildSettings settings;
+        settings.profile = Profile::paper;
         settings.axes = axes;
         settings.depth = depth;
         const Tree expected = reference_tree(owned.view(), settings);
@@ -68,6 +75,7 @@ TEST(Builder, EqualsTheReferenceOnRandomMeshes) {
     const test::OwnedMesh owned = test::moved(test::soup(triangles, seed, size),
                                               {scale(), scale(), scale()}, {scale(), -scale(), 0});
     BuildSettings settings;
+    settings.profile = Profile::paper;
     settings.axes = *rc::gen::element(AxisSchedule::cyclic, AxisSchedule::longest);
     settings.depth = *rc::gen::inRange(-1, 13);
     Builder builder;
@@ -113,25 +121,30 @@ TEST(Builder, PassesOverVerticesNobodyUses) {
 
 TEST(Builder, ReusesTheTreesMemory) {
   const test::OwnedMesh owned = test::soup(5000, 1, 0.02f);
-  Builder builder;
-  Tree tree;
-  ASSERT_TRUE(builder.build(owned.view(), {}, tree).ok());
-  const Node* const nodes = tree.nodes().data();
-  const std::uint32_t* const ids = tree.ids().data();
-  for (int frame = 0; frame < 3; ++frame) {
-    ASSERT_TRUE(builder.build(owned.view(), {}, tree).ok());
-    EXPECT_EQ(tree.nodes().data(), nodes);
-    EXPECT_EQ(tree.ids().data(), ids);
+  for (const Profile profile : kGridProfiles) {
+    SCOPED_TRACE(to_string(profile));
+    BuildSettings settings;
+    settings.profile = profile;
+    Builder builder;
+    Tree tree;
+    ASSERT_TRUE(builder.build(owned.view(), settings, tree).ok());
+    const Node* const nodes = tree.nodes().data();
+    const std::uint32_t* const ids = tree.ids().data();
+    for (int frame = 0; frame < 3; ++frame) {
+      ASSERT_TRUE(builder.build(owned.view(), settings, tree).ok());
+      EXPECT_EQ(tree.nodes().data(), nodes);
+      EXPECT_EQ(tree.ids().data(), ids);
+    }
+    builder.shrink();
+    ASSERT_TRUE(builder.build(owned.view(), settings, tree).ok());
+    EXPECT_EQ(builder.stats().triangles, 5000u);
+    EXPECT_EQ(builder.stats().references, tree.ids().size());
+    EXPECT_GT(builder.stats().planned_bytes, tree.ids().size_bytes());
   }
-  builder.shrink();
-  ASSERT_TRUE(builder.build(owned.view(), {}, tree).ok());
-  EXPECT_EQ(builder.stats().triangles, 5000u);
-  EXPECT_EQ(builder.stats().references, tree.ids().size());
-  EXPECT_GT(builder.stats().planned_bytes, tree.ids().size_bytes());
 }
 
 TEST(Builder, SaysWhatIsWrongWithAMeshInEveryProfile) {
-  for (const Profile profile : {Profile::paper, Profile::sah_exact, Profile::sah_binned}) {
+  for (const Profile profile : kProfiles) {
     SCOPED_TRACE(to_string(profile));
     BuildSettings settings;
     settings.profile = profile;
@@ -165,10 +178,13 @@ TEST(Builder, RefusesSettingsThatCannotBe) {
     settings.depth = 31;
     EXPECT_EQ(builder.build(owned.view(), settings).status().code(), StatusCode::invalid_argument);
     settings.depth = kAutoDepth;
+    settings.profile = Profile::paper;
     settings.max_growth = 0.5;
     EXPECT_EQ(builder.build(owned.view(), settings).status().code(), StatusCode::invalid_argument);
   }
   BuildSettings settings;
+  settings.depth = 31;
+  EXPECT_EQ(builder.build(owned.view(), settings).status().code(), StatusCode::invalid_argument);
   settings.profile = static_cast<Profile>(77);
   EXPECT_EQ(builder.build(owned.view(), settings).status().code(), StatusCode::invalid_argument);
 }
@@ -178,21 +194,24 @@ TEST(Builder, RefusesMoreMemoryThanItsLimitBeforeItTakesIt) {
   owned.add({0, 0, 0}, {1, 1, 1}, {1, 0, 1});
   Builder builder;
   for (const Implementation implementation : {Implementation::fast, Implementation::reference}) {
-    BuildSettings settings;
-    settings.implementation = implementation;
-    settings.depth = 27;
-    settings.memory_limit_bytes = 100 << 20;
-    EXPECT_EQ(builder.build(owned.view(), settings).status().code(), StatusCode::resource_limit);
-    settings.depth = kAutoDepth;
-    EXPECT_TRUE(builder.build(owned.view(), settings).ok());
-    settings.memory_limit_bytes = 1000;
-    EXPECT_EQ(builder.build(owned.view(), settings).status().code(), StatusCode::resource_limit);
+    for (const Profile profile : kGridProfiles) {
+      BuildSettings settings;
+      settings.profile = profile;
+      settings.implementation = implementation;
+      settings.depth = 27;
+      settings.memory_limit_bytes = 100 << 20;
+      EXPECT_EQ(builder.build(owned.view(), settings).status().code(), StatusCode::resource_limit);
+      settings.depth = kAutoDepth;
+      EXPECT_TRUE(builder.build(owned.view(), settings).ok());
+      settings.memory_limit_bytes = 1000;
+      EXPECT_EQ(builder.build(owned.view(), settings).status().code(), StatusCode::resource_limit);
+    }
   }
 }
 
 TEST(Builder, CanBeCancelledAtEveryReport) {
   const test::OwnedMesh owned = test::soup(3000, 1, 0.05f);
-  for (const Profile profile : {Profile::paper, Profile::sah_exact, Profile::sah_binned}) {
+  for (const Profile profile : kProfiles) {
     SCOPED_TRACE(to_string(profile));
     Builder builder;
     BuildSettings settings;

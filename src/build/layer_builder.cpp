@@ -124,14 +124,14 @@ void LayerBuilder::emit_children(const Layer& layer, std::size_t first, std::siz
   const int m = static_cast<int>(std::bit_width(below ^ above)) - 1;
   const std::uint32_t upper_code = above >> m << m;
   const auto* const codes = layer.code.data();
-  const auto split = static_cast<std::size_t>(
-      std::lower_bound(codes + first, codes + end, upper_code) - codes);
+  const auto split =
+      static_cast<std::size_t>(std::lower_bound(codes + first, codes + end, upper_code) - codes);
   const Grid::Split plane = layer.grid.split_below(upper_code, m);
   const std::size_t node = output_->node_count++;
   make_room(output_->nodes, node + 1);
   emit_children(layer, first, split);
-  output_->nodes[node] = Node::inner(plane.axis, plane.position,
-                                     static_cast<std::uint32_t>(output_->node_count));
+  output_->nodes[node] =
+      Node::inner(plane.axis, plane.position, static_cast<std::uint32_t>(output_->node_count));
   emit_children(layer, split, end);
 }
 
@@ -161,8 +161,8 @@ bool LayerBuilder::make_layer(const List& list, Layer& layer) {
     bounds.hi[a] = std::min(bounds.hi[a], list.cell.hi[a]);
   }
   const int log2 = static_cast<int>(std::bit_width(list.size - 1));
-  grid.set(bounds, std::min({log2 + kRealtimeRule.layer_extra_depth,
-                             kRealtimeRule.layer_most_depth, list.levels_left}));
+  grid.set(bounds, std::min({log2 + kRealtimeRule.layer_extra_depth, kRealtimeRule.layer_most_depth,
+                             list.levels_left}));
   cells_.resize(list.size);
   const std::uint64_t limit =
       std::min(std::uint64_t{kRealtimeRule.layer_growth} * list.size, list.budget);
@@ -241,11 +241,10 @@ void LayerBuilder::put_large(const LayerTriangles& triangles, const LocalGrid& g
   const CellOverlap overlap(corner, origin);
   for (std::uint32_t z = 0; z <= span[2]; ++z) {
     for (std::uint32_t y = 0; y <= span[1]; ++y) {
-      const std::uint32_t zy =
-          grid.code_bits(2, origin[2] + z) | grid.code_bits(1, origin[1] + y);
+      const std::uint32_t zy = grid.code_bits(2, origin[2] + z) | grid.code_bits(1, origin[1] + y);
       for (std::uint32_t x = 0; x <= span[0]; ++x) {
-        if (axes > 1 && !overlap.at(static_cast<float>(x), static_cast<float>(y),
-                                    static_cast<float>(z))) {
+        if (axes > 1 &&
+            !overlap.at(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z))) {
           continue;
         }
         entries_.code[entries_.count] =

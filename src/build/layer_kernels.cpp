@@ -57,9 +57,7 @@ std::uint64_t SumOf(std::size_t count, const CountOf& f) {
     auto sum = hn::Zero(di);
     for (std::size_t i = begin; i < end; i += lanes) {
       const auto n = f(i);
-      sum = hn::Add(sum, end - i >= lanes
-                             ? n
-                             : hn::IfThenElseZero(hn::FirstN(di, end - i), n));
+      sum = hn::Add(sum, end - i >= lanes ? n : hn::IfThenElseZero(hn::FirstN(di, end - i), n));
     }
     HWY_ALIGN std::int32_t lane[hn::MaxLanes(I())];
     hn::Store(sum, di, lane);
@@ -156,16 +154,14 @@ VI OverlapMask(const VF (&corner)[3][3], const VF (&origin)[3]) {
       const auto& third = p[(e + 2) % 3];
       auto nu = hn::Sub(from[v], to[v]);
       auto nv = hn::Sub(to[u], from[u]);
-      const auto side = hn::Add(hn::Mul(nu, hn::Sub(third[u], from[u])),
-                                hn::Mul(nv, hn::Sub(third[v], from[v])));
+      const auto side =
+          hn::Add(hn::Mul(nu, hn::Sub(third[u], from[u])), hn::Mul(nv, hn::Sub(third[v], from[v])));
       const auto sign = hn::And(side, hn::SignBit(d));
       nu = hn::Xor(nu, sign);
       nv = hn::Xor(nv, sign);
-      const auto reach =
-          hn::Add(hn::Add(hn::Max(nu, zero), hn::Max(nv, zero)),
-                  hn::Add(hn::Mul(hn::Add(hn::Abs(nu), hn::Abs(nv)), slack), least));
-      const auto base =
-          hn::Sub(reach, hn::Add(hn::Mul(nu, from[u]), hn::Mul(nv, from[v])));
+      const auto reach = hn::Add(hn::Add(hn::Max(nu, zero), hn::Max(nv, zero)),
+                                 hn::Add(hn::Mul(hn::Add(hn::Abs(nu), hn::Abs(nv)), slack), least));
+      const auto base = hn::Sub(reach, hn::Add(hn::Mul(nu, from[u]), hn::Mul(nv, from[v])));
       out00 = hn::Or(out00, hn::Lt(base, zero));
       out10 = hn::Or(out10, hn::Lt(hn::Add(nu, base), zero));
       out01 = hn::Or(out01, hn::Lt(hn::Add(nv, base), zero));
@@ -192,29 +188,26 @@ VI OverlapMask(const VF (&corner)[3][3], const VF (&origin)[3]) {
     normal[w] = hn::Sub(a, b);
     size[w] = hn::Add(hn::Abs(a), hn::Abs(b));
   }
-  const auto room =
-      hn::Add(hn::Mul(hn::Add(hn::Add(size[0], size[1]), size[2]), slack), least);
-  const auto at =
-      hn::Add(hn::Add(hn::Mul(normal[0], p[0][0]), hn::Mul(normal[1], p[0][1])),
-              hn::Mul(normal[2], p[0][2]));
-  const auto above = hn::Sub(
-      hn::Add(hn::Add(hn::Add(hn::Max(normal[0], zero), hn::Max(normal[1], zero)),
-                      hn::Max(normal[2], zero)),
-              room),
-      at);
-  const auto below = hn::Sub(
-      hn::Sub(hn::Add(hn::Add(hn::Min(normal[0], zero), hn::Min(normal[1], zero)),
-                      hn::Min(normal[2], zero)),
-              room),
-      at);
+  const auto room = hn::Add(hn::Mul(hn::Add(hn::Add(size[0], size[1]), size[2]), slack), least);
+  const auto at = hn::Add(hn::Add(hn::Mul(normal[0], p[0][0]), hn::Mul(normal[1], p[0][1])),
+                          hn::Mul(normal[2], p[0][2]));
+  const auto above =
+      hn::Sub(hn::Add(hn::Add(hn::Add(hn::Max(normal[0], zero), hn::Max(normal[1], zero)),
+                              hn::Max(normal[2], zero)),
+                      room),
+              at);
+  const auto below =
+      hn::Sub(hn::Sub(hn::Add(hn::Add(hn::Min(normal[0], zero), hn::Min(normal[1], zero)),
+                              hn::Min(normal[2], zero)),
+                      room),
+              at);
   for (std::size_t cell = 0; cell < 8; ++cell) {
     auto n = zero;
     if (cell & 1) n = normal[0];
     if (cell & 2) n = cell & 1 ? hn::Add(n, normal[1]) : normal[1];
     if (cell & 4) n = cell & 3 ? hn::Add(n, normal[2]) : normal[2];
     const auto out = hn::Or(hn::Lt(hn::Add(n, above), zero), hn::Gt(hn::Add(n, below), zero));
-    outside = hn::Or(outside,
-                     hn::IfThenElseZero(hn::RebindMask(di, out), hn::Set(di, 1 << cell)));
+    outside = hn::Or(outside, hn::IfThenElseZero(hn::RebindMask(di, out), hn::Set(di, 1 << cell)));
   }
   outside = hn::IfThenZeroElse(hn::RebindMask(di, untested), outside);
   return hn::AndNot(outside, hn::Set(di, 255));
@@ -261,9 +254,9 @@ void MaskLayer(const LayerTriangles& triangles, const LocalGrid& grid, LayerCell
       const AxisQuantiser& quantiser = grid.quantiser(a);
       for (std::size_t c = 0; c < 3; ++c) {
         const auto v = hn::GatherIndex(d, triangles.coordinate[3 * c + a].data(), index);
-        corner[c][a] = hn::Mul(
-            hn::Mul(hn::Sub(v, hn::Set(d, quantiser.lo)), hn::Set(d, quantiser.scale)),
-            hn::Set(d, grid.to_cells(a)));
+        corner[c][a] =
+            hn::Mul(hn::Mul(hn::Sub(v, hn::Set(d, quantiser.lo)), hn::Set(d, quantiser.scale)),
+                    hn::Set(d, grid.to_cells(a)));
       }
       origin[a] = hn::ConvertTo(d, hn::GatherIndex(di, cells.lo[a].data(), index));
     }
@@ -289,8 +282,7 @@ void AppendMasked(std::uint32_t first, std::uint32_t end, const LocalGrid& grid,
   std::uint32_t* triangle = entries.triangle.data() + entries.count;
   for (std::uint32_t i = first; i < end; ++i) {
     const auto bits = [&](std::size_t a) {
-      return hn::LoadU(
-          d, grid.corners(a, static_cast<std::uint32_t>(cells.lo[a][i])).data());
+      return hn::LoadU(d, grid.corners(a, static_cast<std::uint32_t>(cells.lo[a][i])).data());
     };
     const auto codes = hn::Or(hn::Or(bits(0), bits(1)), bits(2));
     const auto mask = hn::LoadMaskBits(d, &cells.mask[i]);

@@ -45,8 +45,8 @@ void list_cells(const Buckets& buckets, std::size_t ids, Layers& layers) {
   layers.chunk_count = 0;
   for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
     while (end < count &&
-           (end == begin || layers.cells[end + 1].first - layers.cells[begin].first <=
-                                kChunkReferences)) {
+           (end == begin ||
+            layers.cells[end + 1].first - layers.cells[begin].first <= kChunkReferences)) {
       ++end;
     }
     if (layers.chunk_count == layers.chunks.size()) layers.chunks.emplace_back();
@@ -67,8 +67,8 @@ std::uint32_t ids_end(const Layers& layers, const Layers::Chunk& chunk, std::siz
                               : static_cast<std::uint32_t>(chunk.output.id_count);
 }
 
-// The nodes above the cells' subtrees, from the last to the first as in emit_nodes; and the place of
-// each subtree.
+// The nodes above the cells' subtrees, from the last to the first as in emit_nodes; and the place
+// of each subtree.
 void emit_top(const Grid& grid, Layers& layers, std::vector<Node>& nodes) {
   struct Open {
     int m;
@@ -101,8 +101,8 @@ void emit_top(const Grid& grid, Layers& layers, std::vector<Node>& nodes) {
 }  // namespace
 
 std::uint64_t layer_bytes_per_reference() {
-  // A list of n makes fewer than n 2^(k+1) leaves where a layer has at most ceil(log2 n) + k levels;
-  // a list that is a leaf of the top grid makes one.
+  // A list of n makes fewer than n 2^(k+1) leaves where a layer has at most ceil(log2 n) + k
+  // levels; a list that is a leaf of the top grid makes one.
   constexpr int extra = kRealtimeRule.layer_extra_depth + 1;
   constexpr std::uint64_t references = kRealtimeRule.whole_growth;
   constexpr std::uint64_t leaves = extra < 0 ? (references >> -extra) + 1 : references;
@@ -124,8 +124,8 @@ void build_layers(const MeshView& mesh, const Grid& grid, const Buckets& buckets
       Layers::TopCell& cell = layers.cells[j];
       cell.node_first = static_cast<std::uint32_t>(output.node_count);
       cell.id_first = static_cast<std::uint32_t>(output.id_count);
-      builder.build(mesh, ids, cell.first, layers.cells[j + 1].first,
-                    box_of(grid, cell.code), grid.depth(), simd, output);
+      builder.build(mesh, ids, cell.first, layers.cells[j + 1].first, box_of(grid, cell.code),
+                    grid.depth(), simd, output);
     }
   });
 }

@@ -27,8 +27,7 @@ std::vector<Box3> boxes() {
     const float offset = std::ldexp(random.in(-1, 1), static_cast<int>(random.below(20)));
     for (std::size_t a = 0; a < 3; ++a) {
       box.lo[a] = offset + random.in(-1, 1);
-      box.hi[a] =
-          box.lo[a] + std::ldexp(random.in(0, 1), -static_cast<int>(random.below(24)));
+      box.hi[a] = box.lo[a] + std::ldexp(random.in(0, 1), -static_cast<int>(random.below(24)));
     }
     list.push_back(box);
   }
@@ -122,9 +121,9 @@ TEST(CellOverlap, NeverMissesACellAndLeavesMostOthersOut) {
       for (std::uint32_t y = lo[1]; y <= hi[1]; ++y) {
         for (std::uint32_t x = lo[0]; x <= hi[0]; ++x) {
           const bool expected = reaches_into(triangle, {x, y, z});
-          const bool found = overlap.at(static_cast<float>(x - lo[0]),
-                                        static_cast<float>(y - lo[1]),
-                                        static_cast<float>(z - lo[2]));
+          const bool found =
+              overlap.at(static_cast<float>(x - lo[0]), static_cast<float>(y - lo[1]),
+                         static_cast<float>(z - lo[2]));
           ASSERT_TRUE(found || !expected) << "triangle " << i;
           ++all;
           reached += expected;
@@ -275,8 +274,7 @@ TEST(Realtime, EqualsTheReferenceOnRandomMeshesAndKeepsToItsGrowth) {
     RC_ASSERT(verify(slow, owned.view()).invariant == "");
 
     const Box3 bounds = reference::scene_bound(owned.view()).value();
-    const ReferenceCounts counts =
-        count_references(owned.view(), bounds, AxisSchedule::longest);
+    const ReferenceCounts counts = count_references(owned.view(), bounds, AxisSchedule::longest);
     const int depth =
         choose_depth(counts, owned.view().triangle_count, top_grid_settings(settings)).value();
     RC_ASSERT(slow.ids().size() <=

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grid of one layer of profile `realtime`: the same as Grid with schedule `longest`, to the bit,
-// without its tables and planes, as there are thousands of them in a build.
+// The grid of one layer of profile `realtime`: the same as Grid with schedule `longest`, to the
+// bit, without its tables and planes, as there are thousands of them in a build.
 #pragma once
 
 #include <array>

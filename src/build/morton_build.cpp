@@ -179,8 +179,7 @@ Status morton_build(const MeshView& mesh, const BuildSettings& settings, Workspa
                     TreeArrays& tree, BuildStats& stats) {
   StageClock clock(settings.progress, stats.stages);
   SortedLeaves sorted;
-  if (Status status =
-          sort_into_leaves(mesh, settings, 0, 0.9, clock, w, tree.ids, stats, sorted);
+  if (Status status = sort_into_leaves(mesh, settings, 0, 0.9, clock, w, tree.ids, stats, sorted);
       !status.ok()) {
     return status;
   }

@@ -2,9 +2,9 @@
 // Whether a triangle overlaps a cell of a grid: separating axes, in binary32 and in units of cells.
 //
 // In these units a cell is a cube of side 1 at whole coordinates, so that testing it costs a few
-// additions. The test never misses an overlap: rounding of the coordinates, of the planes and of the
-// arithmetic here moves nothing by more than kOverlapSlack times the largest coordinate, and cells
-// are taken to be that much larger. Operations are in a fixed order and none is fused; the
+// additions. The test never misses an overlap: rounding of the coordinates, of the planes and of
+// the arithmetic here moves nothing by more than kOverlapSlack times the largest coordinate, and
+// cells are taken to be that much larger. Operations are in a fixed order and none is fused; the
 // vectorised form (src/build/layer_kernels.cpp) has the same ones.
 #pragma once
 
@@ -16,9 +16,9 @@
 
 namespace fasttree {
 
-inline constexpr float kOverlapSlack = 0x1p-18f;      ///< 64 units in the last place
-inline constexpr float kOverlapLeast = 0x1p-100f;     ///< of a slack: what underflow can lose
-inline constexpr float kOverlapLargest = 0x1p20f;     ///< larger triangles overlap everything
+inline constexpr float kOverlapSlack = 0x1p-18f;   ///< 64 units in the last place
+inline constexpr float kOverlapLeast = 0x1p-100f;  ///< of a slack: what underflow can lose
+inline constexpr float kOverlapLargest = 0x1p20f;  ///< larger triangles overlap everything
 
 class CellOverlap {
  public:
@@ -77,8 +77,8 @@ class CellOverlap {
     float nv = to[u] - from[u];
     const float side = nu * (third[u] - from[u]) + nv * (third[v] - from[v]);
     if (std::signbit(side)) nu = -nu, nv = -nv;
-    const float reach = (positive(nu) + positive(nv)) +
-                        ((std::fabs(nu) + std::fabs(nv)) * slack + kOverlapLeast);
+    const float reach =
+        (positive(nu) + positive(nv)) + ((std::fabs(nu) + std::fabs(nv)) * slack + kOverlapLeast);
     edges_[w][e] = {nu, nv, reach - (nu * from[u] + nv * from[v])};
   }
 
@@ -96,8 +96,7 @@ class CellOverlap {
       size[w] = std::fabs(a) + std::fabs(b);
     }
     const float room = ((size[0] + size[1]) + size[2]) * slack + kOverlapLeast;
-    const float at =
-        (normal_[0] * p[0][0] + normal_[1] * p[0][1]) + normal_[2] * p[0][2];
+    const float at = (normal_[0] * p[0][0] + normal_[1] * p[0][1]) + normal_[2] * p[0][2];
     above_ = (((positive(normal_[0]) + positive(normal_[1])) + positive(normal_[2])) + room) - at;
     below_ = (((negative(normal_[0]) + negative(normal_[1])) + negative(normal_[2])) - room) - at;
   }

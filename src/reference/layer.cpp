@@ -34,8 +34,8 @@ std::uint64_t references_of_boxes(const MeshView& mesh, const LayerList& list, c
 Grid choose_grid(const MeshView& mesh, const LayerList& list, const Box3& box) {
   const auto size = static_cast<std::uint32_t>(list.ids.size());
   const int log2 = std::bit_width(size - 1);  // ceil(log2 n)
-  int depth = std::min({log2 + kRealtimeRule.layer_extra_depth, kRealtimeRule.layer_most_depth,
-                        list.levels_left});
+  int depth = std::min(
+      {log2 + kRealtimeRule.layer_extra_depth, kRealtimeRule.layer_most_depth, list.levels_left});
   const std::uint64_t limit =
       std::min(std::uint64_t{kRealtimeRule.layer_growth} * size, list.budget);
   while (true) {
@@ -69,9 +69,9 @@ void for_each_cell(const Grid& grid, const std::array<Vec3, 3>& triangle, const 
   for (std::uint32_t z = box.lo[2]; z <= box.hi[2]; ++z) {
     for (std::uint32_t y = box.lo[1]; y <= box.hi[1]; ++y) {
       for (std::uint32_t x = box.lo[0]; x <= box.hi[0]; ++x) {
-        if (axes < 2 || overlap.at(static_cast<float>(x - box.lo[0]),
-                                   static_cast<float>(y - box.lo[1]),
-                                   static_cast<float>(z - box.lo[2]))) {
+        if (axes < 2 ||
+            overlap.at(static_cast<float>(x - box.lo[0]), static_cast<float>(y - box.lo[1]),
+                       static_cast<float>(z - box.lo[2]))) {
           put(grid.morton_code({x, y, z}));
         }
       }

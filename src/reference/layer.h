@@ -21,7 +21,8 @@ struct LayerList {
   int levels_left = 0;       ///< inner nodes that a leaf may still have above it
 };
 
-/// The cells of the list's grid that hold something, in Morton order; none where the list is a leaf.
+/// The cells of the list's grid that hold something, in Morton order; none where the list is a
+/// leaf.
 struct Layer {
   Grid grid;
   std::vector<std::uint32_t> code;

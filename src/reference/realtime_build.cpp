@@ -81,8 +81,7 @@ class Emitter {
     const std::size_t node = nodes.size();
     nodes.emplace_back();
     emit(layer, first, upper);
-    nodes[node] =
-        Node::inner(split.axis, split.position, static_cast<std::uint32_t>(nodes.size()));
+    nodes[node] = Node::inner(split.axis, split.position, static_cast<std::uint32_t>(nodes.size()));
     emit(layer, upper, end);
   }
 

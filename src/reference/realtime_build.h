@@ -12,7 +12,6 @@ namespace fasttree::reference {
 
 /// Builds from settings.depth (of the top grid), memory_limit_bytes and progress. Errors as
 /// Builder::build. Times are appended to stats.stages.
-Result<Tree> realtime_build(const MeshView& mesh, const BuildSettings& settings,
-                            BuildStats& stats);
+Result<Tree> realtime_build(const MeshView& mesh, const BuildSettings& settings, BuildStats& stats);
 
 }  // namespace fasttree::reference

@@ -39,7 +39,8 @@ void expect_equal_to_brute_force(const Tree& tree, const MeshView& mesh,
   }
 }
 
-const std::vector<Profile> kProfiles{Profile::paper, Profile::sah_exact, Profile::sah_binned};
+const std::vector<Profile> kProfiles{Profile::paper, Profile::realtime, Profile::sah_exact,
+                                     Profile::sah_binned};
 
 TEST(Tracer, EqualsBruteForceOnHardRaysOverEveryDegenerateMesh) {
   Builder builder;

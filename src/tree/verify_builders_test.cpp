@@ -15,15 +15,18 @@ using test::Rng;
 
 std::vector<BuildSettings> all_settings() {
   std::vector<BuildSettings> all;
-  for (const Profile profile : {Profile::paper, Profile::sah_exact, Profile::sah_binned}) {
+  for (const Profile profile :
+       {Profile::paper, Profile::realtime, Profile::sah_exact, Profile::sah_binned}) {
     for (const AxisSchedule axes : {AxisSchedule::cyclic, AxisSchedule::longest}) {
       BuildSettings settings;
       settings.profile = profile;
       settings.axes = axes;
       all.push_back(settings);
+      if (profile == Profile::paper || profile == Profile::realtime) {
+        settings.implementation = Implementation::reference;
+        all.push_back(settings);
+      }
       if (profile != Profile::paper) break;
-      settings.implementation = Implementation::reference;
-      all.push_back(settings);
     }
   }
   return all;

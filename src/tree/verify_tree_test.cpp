@@ -95,7 +95,7 @@ struct Breakage {
 std::vector<Breakage> breakages() {
   using P = Parts&;
   return {
-      {"profile", "unknown", paper_sample, [](P p) { p.info.profile = static_cast<Profile>(3); }},
+      {"profile", "unknown", paper_sample, [](P p) { p.info.profile = static_cast<Profile>(4); }},
       {"axis-schedule", "unknown", paper_sample,
        [](P p) { p.info.axes = static_cast<AxisSchedule>(2); }},
       {"triangle-count", "too many", box_sample, [](P p) { p.info.triangle_count = 1u << 30; }},
@@ -263,7 +263,7 @@ TEST(VerifyTree, RandomBytesAreSafe) {
   Rng rng(19);
   for (int round = 0; round < 20000; ++round) {
     TreeInfo info;
-    info.profile = static_cast<Profile>(test::below(rng, 4));
+    info.profile = static_cast<Profile>(test::below(rng, 5));
     info.depth = static_cast<std::uint8_t>(test::below(rng, 4));
     info.bits[0] = info.depth;
     info.triangle_count = test::below(rng, 4);

@@ -92,7 +92,9 @@ TEST(CliErrors, UnwritablePlacesAreThree) {
 
 TEST(CliErrors, MemoryLimitIsFour) {
   expect_error(run({"build", "scene:knot:20000", "--memory-limit", "64K"}), 4, "");
-  expect_error(run({"build", "scene:knot:20000", "--depth", "27", "--memory-limit", "40M"}), 4, "");
+  expect_error(run({"build", "scene:knot:20000", "--profile", "paper", "--depth", "27",
+                    "--memory-limit", "40M"}),
+               4, "");
 }
 
 TEST(CliErrors, AFullDiskIsFourAndLeavesNothing) {

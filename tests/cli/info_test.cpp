@@ -22,7 +22,8 @@ TEST(CliInfo, ListsProceduralScenesThatLoad) {
 TEST(CliInfo, CountsAgreeWithBuild) {
   const auto info = run_json({"info", "scene:stadium:10000"});
   for (const char* axes : {"cyclic", "longest"}) {
-    const auto build = run_json({"build", "scene:stadium:10000", "--axes", axes});
+    const auto build =
+        run_json({"build", "scene:stadium:10000", "--profile", "paper", "--axes", axes});
     const std::size_t depth = build["depth"];
     EXPECT_EQ(info[axes]["depth"], depth) << axes;
     EXPECT_EQ(info[axes]["references_by_depth"][depth], build["references"]) << axes;

@@ -19,14 +19,14 @@ TEST_P(Scene, HasARightTree) {
   // Brute force for all rays, and about as long for a large scene as for a small one.
   const bool large = std::string(name).rfind("dragon", 0) == 0;
   const int rays = large ? 330 : 1100;
-  const auto json = run_json(
-      {"verify", path, "--axes", axes, "--oracle", "brute", "--rays", std::to_string(rays)});
+  const auto json = run_json({"verify", path, "--profile", "paper", "--axes", axes, "--oracle",
+                              "brute", "--rays", std::to_string(rays)});
   EXPECT_EQ(json["ok"], true);
   EXPECT_EQ(json["rays"]["brute_force_checked"], rays);
   EXPECT_GT(json["rays"]["hits"], rays / 3);
   if (!large || run_json({"info"})["embree"].is_null()) return;
-  const auto more = run_json(
-      {"verify", path, "--axes", axes, "--oracle", "embree", "--rays", "11000", "--seed", "2"});
+  const auto more = run_json({"verify", path, "--profile", "paper", "--axes", axes, "--oracle",
+                              "embree", "--rays", "11000", "--seed", "2"});
   EXPECT_EQ(more["rays"]["wrong"], 0);
 }
 

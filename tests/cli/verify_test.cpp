@@ -14,8 +14,8 @@ namespace {
 TEST(CliVerify, PassesRightTrees) {
   for (const char* scene : {"scene:knot:2000", "scene:stadium:2000", "scene:hall:2000"}) {
     for (const char* axes : {"cyclic", "longest"}) {
-      const auto json =
-          run_json({"verify", scene, "--axes", axes, "--rays", "2200", "--oracle", "brute"});
+      const auto json = run_json({"verify", scene, "--profile", "paper", "--axes", axes, "--rays",
+                                  "2200", "--oracle", "brute"});
       EXPECT_EQ(json["ok"], true);
       EXPECT_EQ(json["rays"]["rays"], 2200);
       EXPECT_EQ(json["rays"]["brute_force_checked"], 2200);
@@ -23,6 +23,13 @@ TEST(CliVerify, PassesRightTrees) {
       EXPECT_EQ(json["bytes"]["ok"], true);
     }
   }
+}
+
+TEST(CliVerify, PassesTheDefaultProfile) {
+  const auto json = run_json({"verify", "scene:hall:2000", "--rays", "2200", "--oracle", "brute"});
+  EXPECT_EQ(json["profile"], "realtime");
+  EXPECT_EQ(json["ok"], true);
+  EXPECT_EQ(json["bytes"]["ok"], true);
 }
 
 TEST(CliVerify, PassesTheBaselines) {
@@ -44,7 +51,10 @@ TEST(CliVerify, PassesWithEmbreeWhereItIsThere) {
 TEST(CliVerify, PassesATreeFileWithItsMesh) {
   const Folder folder;
   const std::string tree = folder.path("t.ft");
-  ASSERT_EQ(run({"build", "scene:knot:2000", "--axes", "longest", "--out", tree}).exit_code, 0);
+  ASSERT_EQ(
+      run({"build", "scene:knot:2000", "--profile", "paper", "--axes", "longest", "--out", tree})
+          .exit_code,
+      0);
   EXPECT_EQ(run_json({"verify", tree})["ok"], true);
   const auto json = run_json({"verify", tree, "--mesh", "scene:knot:2000"});
   EXPECT_EQ(json["axes"], "longest");

@@ -47,7 +47,7 @@ class CApi : public testing::Test {
 };
 
 TEST_F(CApi, BuildsTheSameTreesAsCpp) {
-  for (std::uint32_t profile = 0; profile < 3; ++profile) {
+  for (std::uint32_t profile = 0; profile < 4; ++profile) {
     for (std::uint32_t axes = 0; axes < 2; ++axes) {
       ft_build_settings settings = FT_BUILD_SETTINGS_INIT;
       settings.profile = profile;

@@ -17,6 +17,7 @@ TEST(BuiltInScenes, BuildVerifyAndTrace) {
     ASSERT_TRUE(loaded.ok()) << loaded.status().message();
     const MeshView mesh = loaded.value().view();
     test::check_paper_profile(mesh, 2800);
+    test::check_realtime_profile(mesh, 2800);
     test::check_baseline_profile(mesh, Profile::sah_binned, 1400);
     test::check_baseline_profile(mesh, Profile::sah_exact, 1400);
     if (HasFailure()) return;

@@ -31,6 +31,7 @@ TEST_P(RealScenes, BuildVerifyAndTrace) {
   const MeshView mesh = loaded.value().view();
   ASSERT_EQ(mesh.triangle_count, GetParam().triangles);
   test::check_paper_profile(mesh, GetParam().rays);
+  test::check_realtime_profile(mesh, GetParam().rays);
   test::check_baseline_profile(mesh, Profile::sah_binned, GetParam().rays / 4);
   if (GetParam().exact_baseline) {
     test::check_baseline_profile(mesh, Profile::sah_exact, GetParam().rays / 4);
@@ -63,6 +64,7 @@ TEST(RealScenesCounts, ReferencesAndLeavesATriangle) {
     const scene::Mesh loaded = scene::load_scene(path).value();
     for (const AxisSchedule axes : {AxisSchedule::cyclic, AxisSchedule::longest}) {
       BuildSettings settings;
+      settings.profile = Profile::paper;
       settings.axes = axes;
       settings.depth = expected.depth;
       const Tree tree = Builder().build(loaded.view(), settings).value();

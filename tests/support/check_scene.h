@@ -35,6 +35,7 @@ inline void check_paper_profile(const MeshView& mesh, std::size_t ray_count) {
   for (const AxisSchedule axes : {AxisSchedule::cyclic, AxisSchedule::longest}) {
     SCOPED_TRACE(to_string(axes));
     BuildSettings settings;
+    settings.profile = Profile::paper;
     settings.axes = axes;
     const Result<Tree> fast = builder.build(mesh, settings);
     ASSERT_TRUE(fast.ok()) << fast.status().message();
@@ -58,6 +59,27 @@ inline void check_paper_profile(const MeshView& mesh, std::size_t ray_count) {
 
     expect_equal_to_brute_force(tree, mesh, brute, hard_rays(mesh, tree, ray_count, 1));
   }
+}
+
+/// The same for profile realtime, whose axes are fixed and which is not for the device.
+inline void check_realtime_profile(const MeshView& mesh, std::size_t ray_count) {
+  SCOPED_TRACE("realtime");
+  Builder builder;
+  BuildSettings settings;
+  settings.profile = Profile::realtime;
+  const Result<Tree> fast = builder.build(mesh, settings);
+  ASSERT_TRUE(fast.ok()) << fast.status().message();
+  settings.implementation = Implementation::reference;
+  const Result<Tree> reference = builder.build(mesh, settings);
+  ASSERT_TRUE(reference.ok()) << reference.status().message();
+  const Tree& tree = fast.value();
+  EXPECT_EQ(tree.info(), reference.value().info());
+  EXPECT_TRUE(std::ranges::equal(tree.nodes(), reference.value().nodes()));
+  EXPECT_TRUE(std::ranges::equal(tree.ids(), reference.value().ids()));
+
+  const Verification verification = verify(tree, mesh);
+  EXPECT_TRUE(verification.ok) << verification.invariant << ": " << verification.detail;
+  expect_equal_to_brute_force(tree, mesh, BruteForce(mesh), hard_rays(mesh, tree, ray_count, 3));
 }
 
 /// The same for the surface-area-heuristic profiles, which have no second implementation.
