@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 
 #include "build/bit_spread.h"
@@ -13,11 +14,11 @@ namespace fasttree::build {
 class BucketGrid {
  public:
   /// `axes` are those of the tree's depth; the boxes may have been made `box_shift` levels deeper.
-  explicit BucketGrid(const CodeAxes& axes, int box_shift = 0)
+  explicit BucketGrid(const CodeAxes& axes, int box_shift = 0, int threads = 1)
       : axes_(axes),
         box_shift_(box_shift),
-        bucket_bits_(bucket_bits_of(axes.depth)),
-        cell_bits_(axes.depth - bucket_bits_) {}
+        cell_bits_(cell_bits_of(axes.depth, threads)),
+        bucket_bits_(axes.depth - cell_bits_) {}
 
   const CodeAxes& axes() const { return axes_; }
   int box_shift() const { return box_shift_; }
@@ -26,12 +27,12 @@ class BucketGrid {
   std::size_t bucket_count() const { return std::size_t{1} << bucket_bits_; }
   std::uint32_t cell_mask() const { return (1u << cell_bits_) - 1; }
 
-  static int bucket_bits_of(int depth) {
-    // Counters of one bucket's cells should stay in the first-level cache, and buckets should be
-    // few enough for the partition's streams.
-    constexpr int kCellBits = 14;
-    constexpr int kMostBucketBits = 12;
-    return depth - std::clamp(depth - kMostBucketBits, std::min(depth, kCellBits), kMostCellBits);
+  /// Large buckets, so that few triangles are in several, but eight a thread. Nothing in the result
+  /// depends on it.
+  static int cell_bits_of(int depth, int threads) {
+    constexpr int kLeastCellBits = 10;
+    const int bucket_bits = 3 + std::bit_width(static_cast<unsigned>(threads) - 1);
+    return std::clamp(depth - bucket_bits, std::min(depth, kLeastCellBits), kMostCellBits);
   }
 
   /// A triangle's part in one bucket: its id in the lower half; in the upper half the codes of its
@@ -66,8 +67,8 @@ class BucketGrid {
  private:
   CodeAxes axes_;
   int box_shift_;
-  int bucket_bits_;
   int cell_bits_;
+  int bucket_bits_;
 };
 
 template <typename Work>

@@ -187,6 +187,18 @@ std::size_t expand_one_by_one(Expansion& e) {
   return n;
 }
 
+// The two loops over every reference.
+void count_cells(const Expansion& e, std::size_t size, std::uint32_t* counts) {
+  const std::uint16_t* const codes = e.codes;
+  for (std::size_t i = 0; i < size; ++i) ++counts[codes[i]];
+}
+
+void place_ids(const Expansion& e, std::size_t size, std::uint32_t* places, std::uint32_t* ids) {
+  const std::uint16_t* const codes = e.codes;
+  const std::uint32_t* const from = e.ids;
+  for (std::size_t i = 0; i < size; ++i) ids[places[codes[i]]++] = from[i];
+}
+
 std::uint32_t counts_to_leaves(std::uint32_t* counts, std::size_t cells, std::uint32_t bucket_code,
                                std::uint32_t place, LeafStart* leaves) {
   std::uint32_t leaf = 0;
@@ -232,7 +244,7 @@ void sort_buckets(const BucketGrid& grid, Simd simd, Buckets& buckets,
     std::size_t size = 0;
     while (e.next != end) {
       size = expand();
-      for (std::size_t i = 0; i < size; ++i) ++counts[e.codes[i]];
+      count_cells(e, size, counts);
     }
     const bool one_block = size == buckets.reference_begin[b + 1] - buckets.reference_begin[b];
 
@@ -243,18 +255,11 @@ void sort_buckets(const BucketGrid& grid, Simd simd, Buckets& buckets,
         vectors ? HWY_DYNAMIC_DISPATCH(CountsToLeaves)(counts, cells, bucket_code, place, leaves)
                 : counts_to_leaves(counts, cells, bucket_code, place, leaves);
 
-    // What was counted last is still there.
-    const auto place_all = [&] {
-      for (std::size_t i = 0; i < size; ++i) ids[counts[e.codes[i]]++] = e.ids[i];
-    };
     if (one_block) {
-      place_all();
+      place_ids(e, size, counts, ids.data());  // what was counted last is still there
       return;
     }
-    for (e.next = first; e.next != end;) {
-      size = expand();
-      place_all();
-    }
+    for (e.next = first; e.next != end;) place_ids(e, expand(), counts, ids.data());
   });
 }
 

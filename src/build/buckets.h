@@ -62,7 +62,7 @@ void place_records(std::span<const CodeBox> boxes, const BucketGrid& grid, Simd 
 void sort_buckets(const BucketGrid& grid, Simd simd, Buckets& buckets,
                   std::span<std::uint32_t> ids);
 
-/// Bytes of the arrays that count_records makes for chunks, and of all threads' scratch.
+/// Bytes of the arrays by bucket and by chunk and bucket, and of all threads' scratch.
 std::uint64_t partition_bytes(std::uint64_t triangles, const BucketGrid& grid);
 std::uint64_t scratch_bytes(const BucketGrid& grid);
 

@@ -50,7 +50,9 @@ void expect_same(const std::vector<FinestBox>& boxes, const Box3& bounds, AxisSc
   const AxisLevels levels = make_axis_levels(bounds, schedule);
   const Grid deep(bounds, schedule, std::min(depth + box_shift, levels.levels));
   const Grid grid(bounds, schedule, std::min(depth, deep.depth()));
-  const BucketGrid bucket_grid(CodeAxes(levels, grid.depth()), deep.depth() - grid.depth());
+  const int threads = 1 << boxes.size() % 8;  // any may be told
+  const BucketGrid bucket_grid(CodeAxes(levels, grid.depth()), deep.depth() - grid.depth(),
+                               threads);
   EXPECT_EQ(bucket_grid.bucket_bits() + bucket_grid.cell_bits(), grid.depth());
 
   reference::References refs;
@@ -126,10 +128,12 @@ TEST(Buckets, ExpandABucketInSeveralBlocks) {
 
 TEST(Buckets, SplitTheBitsSoThatRecordsFit) {
   for (int depth = 0; depth <= 30; ++depth) {
-    const int cells = depth - BucketGrid::bucket_bits_of(depth);
-    EXPECT_GE(BucketGrid::bucket_bits_of(depth), 0);
-    EXPECT_LE(cells, BucketGrid::kMostCellBits);
-    EXPECT_LE(BucketGrid::bucket_bits_of(depth), 16);
+    for (const int threads : {1, 2, 3, 64, 1000}) {
+      const int cells = BucketGrid::cell_bits_of(depth, threads);
+      EXPECT_GE(cells, std::min(depth, 10));
+      EXPECT_LE(cells, std::min(depth, BucketGrid::kMostCellBits));
+      EXPECT_LE(depth - cells, 20);
+    }
   }
 }
 

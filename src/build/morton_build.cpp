@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "build/morton_build.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <bit>
 #include <string>
@@ -154,7 +156,8 @@ Status sort_into_leaves(const MeshView& whole_mesh, const BuildSettings& setting
     if (!failure.ok()) return;
     // The records are not counted yet, but each triangle has one.
     grid = Grid(g.bounds, settings.axes, g.depth);
-    bucket_grid = BucketGrid(CodeAxes(g.schedule, g.depth), g.box_depth - g.depth);
+    bucket_grid = BucketGrid(CodeAxes(g.schedule, g.depth), g.box_depth - g.depth,
+                             tbb::this_task_arena::max_concurrency());
     failure = plan(mesh.triangle_count);
   });
   if (!failure.ok()) return failure;

@@ -160,14 +160,15 @@ HWY_EXPORT(PlaceVectors);
 namespace {
 
 // Triangles one task counts and places in order. Each chunk has a counter a bucket, so there are
-// only as many as keep the threads busy; the result does not depend on it.
+// only as many as keep the threads busy, and no more counters than triangles; the result does not
+// depend on it.
 constexpr std::size_t kLeastChunk = 4096;
 constexpr std::size_t kChunksPerThread = 4;
 
-std::size_t choose_chunk_size(std::size_t triangles) {
+std::size_t choose_chunk_size(std::size_t triangles, std::size_t buckets) {
   const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
   const std::size_t chunks = threads == 1 ? 1 : threads * kChunksPerThread;
-  return std::max(kLeastChunk, (triangles + chunks - 1) / chunks);
+  return std::max({kLeastChunk, buckets, (triangles + chunks - 1) / chunks});
 }
 
 // Calls work(chunk, first triangle, end) in parallel.
@@ -181,14 +182,16 @@ void for_each_chunk(std::size_t triangles, std::size_t size, const Work& work) {
 }  // namespace
 
 std::uint64_t partition_bytes(std::uint64_t triangles, const BucketGrid& grid) {
-  const std::size_t size = choose_chunk_size(triangles);
-  return (triangles + size - 1) / size * grid.bucket_count() * sizeof(std::uint64_t);
+  const std::size_t size = choose_chunk_size(triangles, grid.bucket_count());
+  // Counters of the chunks, and what else there is by bucket.
+  const std::uint64_t chunks = (triangles + size - 1) / size;
+  return grid.bucket_count() * (chunks + 4) * sizeof(std::uint64_t);
 }
 
 void count_records(std::span<const CodeBox> boxes, const BucketGrid& grid, Simd simd,
                    Buckets& buckets) {
   const std::size_t count = grid.bucket_count();
-  buckets.chunk_size = choose_chunk_size(boxes.size());
+  buckets.chunk_size = choose_chunk_size(boxes.size(), count);
   const std::size_t chunks = (boxes.size() + buckets.chunk_size - 1) / buckets.chunk_size;
   buckets.chunk_counts.resize(chunks * count);
   buckets.record_begin.resize(count + 1);

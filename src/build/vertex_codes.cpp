@@ -113,6 +113,27 @@ const float* packed_at(const MeshView& mesh, std::size_t vertex) {
   return static_cast<const float*>(mesh.positions) + 3 * vertex;
 }
 
+// Gives vertices first ... end - 1 to `work(packed positions, their number, the first's index)`,
+// which takes whole vectors of them and returns how many. Positions that lie otherwise, as in the
+// records of a scene file, are packed first, in blocks. Returns the first vertex that is left.
+template <typename Work>
+std::size_t for_vectors(const MeshView& mesh, std::size_t first, std::size_t end,
+                        const Work& work) {
+  if (packed(mesh)) return first + work(packed_at(mesh, first), end - first, first);
+  constexpr std::size_t kBlock = 256;
+  std::array<Vec3, kBlock> block;
+  while (first < end) {
+    const std::size_t count = std::min(kBlock, end - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      block[i] = mesh.position(static_cast<std::uint32_t>(first + i));
+    }
+    const std::size_t taken = work(&block[0].x, count, first);
+    first += taken;
+    if (taken < count) break;
+  }
+  return first;
+}
+
 template <typename Work>
 void for_each_range(std::size_t vertices, const Work& work) {
   tbb::parallel_for(
@@ -134,7 +155,7 @@ std::uint32_t code_of(Vec3 p, const VertexEncoder& e) {
 
 bool vertex_bounds(const MeshView& mesh, std::span<const std::uint32_t> skipped, Simd simd,
                    Box3& bounds) {
-  const bool vectors = simd == Simd::widest && packed(mesh);
+  const bool vectors = simd == Simd::widest;
   std::atomic<bool> all_finite = true;
   tbb::combinable<Box3> parts;
   for_each_range(mesh.vertex_count, [&](std::size_t first, std::size_t end) {
@@ -142,7 +163,9 @@ bool vertex_bounds(const MeshView& mesh, std::span<const std::uint32_t> skipped,
     bool finite = true;
     const auto look_at = [&](std::size_t v, std::size_t stop) {
       if (vectors) {
-        v += HWY_DYNAMIC_DISPATCH(BoundsOfPacked)(packed_at(mesh, v), stop - v, box, finite);
+        v = for_vectors(mesh, v, stop, [&](const float* xyz, std::size_t count, std::size_t) {
+          return HWY_DYNAMIC_DISPATCH(BoundsOfPacked)(xyz, count, box, finite);
+        });
       }
       for (; v < stop; ++v) {
         const Vec3 p = mesh.position(static_cast<std::uint32_t>(v));
@@ -185,12 +208,14 @@ VertexEncoder::VertexEncoder(const Box3& scene, const AxisLevels& schedule, int 
 
 void encode_vertices(const MeshView& mesh, const VertexEncoder& encoder, Simd simd,
                      Buffer<std::uint32_t>& codes) {
-  const bool vectors = simd == Simd::widest && packed(mesh);
+  const bool vectors = simd == Simd::widest;
   codes.resize(mesh.vertex_count);
   for_each_range(mesh.vertex_count, [&](std::size_t first, std::size_t end) {
     if (vectors) {
-      first += HWY_DYNAMIC_DISPATCH(EncodePacked)(packed_at(mesh, first), end - first, encoder,
-                                                  &codes[first]);
+      first = for_vectors(
+          mesh, first, end, [&](const float* xyz, std::size_t count, std::size_t vertex) {
+            return HWY_DYNAMIC_DISPATCH(EncodePacked)(xyz, count, encoder, &codes[vertex]);
+          });
     }
     for (; first < end; ++first) {
       codes[first] = code_of(mesh.position(static_cast<std::uint32_t>(first)), encoder);
