@@ -76,5 +76,7 @@ std::unique_ptr<Command> make_build_command();
 std::unique_ptr<Command> make_verify_command();
 std::unique_ptr<Command> make_render_command();
 std::unique_ptr<Command> make_compare_command();
+std::unique_ptr<Command> make_animate_command();
+std::unique_ptr<Command> make_view_command();
 
 }  // namespace fasttree::app
