@@ -2,6 +2,8 @@
 // Rays that go nearly alike, 64 at a time: intervals round all of them against the boxes of a node,
 // and against those of a leaf's triangles; single rays only against what is left. Compiled once for
 // every instruction set.
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <bit>
 #include <vector>
@@ -100,7 +102,9 @@ HWY_INLINE void VisitNode(const WideLayout& layout, std::uint32_t index, const P
   p.depth = Push(node, index, p.octant, enter, leave, p.entries, p.enters, p.depth);
 }
 
-// The rays that a child's box may concern.
+// The rays that a child's box may concern. For a node it is enough to know that there are some, so
+// the first vector with one ends the search.
+template <bool kSome>
 HWY_INLINE std::uint64_t RaysInBox(const WideNode& node, std::uint32_t slot, const Packet& p) {
   const DF d;
   std::array<VF, 3> near, far;
@@ -117,9 +121,10 @@ HWY_INLINE std::uint64_t RaysInBox(const WideNode& node, std::uint32_t slot, con
       enter = hn::Max(enter, hn::MulSub(near[a], r, hn::Load(d, p.rays.near_offset[a] + i)));
       leave = hn::Min(leave, hn::MulSub(far[a], r, hn::Load(d, p.rays.far_offset[a] + i)));
     }
-    rays |= std::uint64_t{BitsOf(d, hn::Le(enter, leave))} << i;
+    rays |= p.alive & std::uint64_t{BitsOf(d, hn::Le(enter, leave))} << i;
+    if (kSome && rays != 0) return rays;
   }
-  return rays & p.alive;
+  return rays;
 }
 
 using DD = hn::Repartition<double, DF>;
@@ -338,13 +343,13 @@ void Walk(const WideLayout& layout, PacketBounds& b, Packet& p) {
     const std::uint32_t entry = p.entries[p.depth];
     const WideNode& node = layout.nodes[entry >> 4];
     const std::uint32_t slot = entry & 15;
-    const std::uint64_t rays = RaysInBox(node, slot, p);
-    if (rays == 0) continue;
     const std::uint32_t n = node.count[slot];
     if (n == 0) {
-      VisitNode(layout, node.child[slot], b, p);
+      if (RaysInBox<true>(node, slot, p) != 0) VisitNode(layout, node.child[slot], b, p);
       continue;
     }
+    const std::uint64_t rays = RaysInBox<false>(node, slot, p);
+    if (rays == 0) continue;
     TestLeaf<kAny>(layout, node.child[slot], n, rays, b, p);
     if (kAny) {
       if (p.alive == 0) return;
@@ -447,6 +452,20 @@ HWY_INLINE bool AllMiss(const Ray* rays, const Box3& bounds) {
   return enter > leave + 0x1p-20f * std::fabs(leave);
 }
 
+// Results of a packet that hits nothing, past the caches: it is most of the memory's work in a
+// picture with much background.
+HWY_INLINE void StreamMisses(Hit* hits) {
+  static_assert(sizeof(Hit) == 16);
+  const hn::FixedTag<float, 4> d;
+  const Hit miss;
+  if (reinterpret_cast<std::uintptr_t>(hits) % 16 != 0) {
+    std::fill_n(hits, kPacket, miss);
+    return;
+  }
+  const auto value = hn::LoadU(d, &miss.t);
+  for (std::size_t i = 0; i < kPacket; ++i) hn::Stream(value, d, &hits[i].t);
+}
+
 template <bool kAny>
 void TracePackets(const WideScene& scene, const WideBatch& batch) {
   const DU du;
@@ -456,7 +475,7 @@ void TracePackets(const WideScene& scene, const WideBatch& batch) {
       if (kAny) {
         std::fill_n(batch.flags.data() + begin, kPacket, std::uint8_t{0});
       } else {
-        std::fill_n(batch.hits.data() + begin, kPacket, Hit{});
+        StreamMisses(batch.hits.data() + begin);
       }
       continue;
     }
@@ -499,6 +518,7 @@ void TracePackets(const WideScene& scene, const WideBatch& batch) {
 
 void PacketClosest(const WideScene& scene, const WideBatch& batch) {
   TracePackets<false>(scene, batch);
+  hwy::FlushStream();
 }
 void PacketOccluded(const WideScene& scene, const WideBatch& batch) {
   TracePackets<true>(scene, batch);
