@@ -87,8 +87,8 @@ Status settle_depth(std::uint32_t triangles, const BuildSettings& settings, cons
 }
 
 // The bounds by going over the triangles: for a mesh some of whose vertices no triangle uses, and
-// for saying what is wrong, and where. Meshes from scanners have such vertices; in the next frame
-// they will be the same, so they are remembered.
+// for saying what is wrong, and where. Such vertices will mostly be the same in the next frame, so
+// they are remembered.
 Status bounds_of_triangles(const MeshView& mesh, Workspace& w, Box3& bounds) {
   w.strays.clear();
   if (Status status = validate(mesh); !status.ok()) return status;

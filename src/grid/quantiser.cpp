@@ -26,16 +26,29 @@ AxisQuantiser make_axis_quantiser(const Box3& bounds, const AxisLevels& levels, 
 }
 
 float find_plane(const AxisQuantiser& quantiser, float hi, std::uint32_t k) {
+  const auto reaches = [&](std::int64_t ordinal) {
+    return quantiser(from_ordinal(static_cast<std::int32_t>(ordinal))) >= k;
+  };
   // q15(lo) = 0 < k, and q15(hi) is the last cell: extent * scale rounds to no less than 2^15 - 1.
   std::int64_t below = to_ordinal(quantiser.lo);
   std::int64_t above = to_ordinal(hi);
+  // Nearly always only a few floats from where it would be without rounding: go from there in
+  // doubling steps until it is passed.
+  const float guess = quantiser.lo + static_cast<float>(k) / quantiser.scale;
+  const std::int64_t start = to_ordinal(guess);
+  if (start > below && start < above) {
+    const bool down = reaches(start);
+    (down ? above : below) = start;
+    for (std::int64_t step = 1; above - below > step; step *= 2) {
+      const std::int64_t next = down ? above - step : below + step;
+      const bool reached = reaches(next);
+      (reached ? above : below) = next;
+      if (reached != down) break;
+    }
+  }
   while (above - below > 1) {
     const std::int64_t middle = below + (above - below) / 2;
-    if (quantiser(from_ordinal(static_cast<std::int32_t>(middle))) >= k) {
-      above = middle;
-    } else {
-      below = middle;
-    }
+    (reaches(middle) ? above : below) = middle;
   }
   return from_ordinal(static_cast<std::int32_t>(above));
 }
