@@ -54,15 +54,17 @@ HWY_INLINE void transpose(V4 a, V4 b, V4 c, V4 d, V4& x, V4& y, V4& z) {
   z = hn::BitCast(d4, hn::InterleaveLower(d2, hn::BitCast(d2, ab_z), hn::BitCast(d2, cd_z)));
 }
 
-Box3 CopyTriangles(const MeshView& mesh, std::span<const std::uint32_t> all, std::uint32_t first,
-                   std::uint32_t count, float* rows) {
-  const std::span<const std::uint32_t> ids = all.subspan(first, count);
+template <bool kIndexed>
+HWY_INLINE Box3 Copy(const MeshView& mesh, std::span<const std::uint32_t> all, std::uint32_t first,
+                     std::size_t n, float* rows) {
   const D4 d4;
-  const std::size_t n = ids.size();
-  auto lo = hn::Set(d4, std::numeric_limits<float>::infinity());
-  auto hi = hn::Neg(lo);
+  const std::uint32_t* const ids = all.data() + first;
   const auto* const positions = static_cast<const std::byte*>(mesh.positions);
+  const std::size_t stride = mesh.position_stride_bytes;
   const std::uint32_t last = mesh.vertex_count - 1;
+  const auto index = [&](std::uint32_t id, std::uint32_t c) HWY_ATTR {
+    return kIndexed ? mesh.indices[std::size_t{3} * id + c] : mesh.vertex_index(id, c);
+  };
   // 16 bytes are read of each position but the last.
   const auto position = [&](std::uint32_t vertex) HWY_ATTR {
     if (HWY_UNLIKELY(vertex == last)) {
@@ -70,29 +72,29 @@ Box3 CopyTriangles(const MeshView& mesh, std::span<const std::uint32_t> all, std
       HWY_ALIGN const float lanes[4] = {p.x, p.y, p.z, p.z};
       return hn::Load(d4, lanes);
     }
-    return hn::LoadU(d4, reinterpret_cast<const float*>(
-                             positions + vertex * mesh.position_stride_bytes));
+    return hn::LoadU(d4, reinterpret_cast<const float*>(positions + vertex * stride));
   };
+  auto lo = hn::Set(d4, std::numeric_limits<float>::infinity());
+  auto hi = hn::Neg(lo);
   // What the next leaves need is asked for early: they are the next ids.
-  const auto fetch_ahead = [&](std::size_t reference) HWY_ATTR {
-    if (mesh.indices != nullptr && reference + kIndicesAhead < all.size()) {
-      hwy::Prefetch(mesh.indices + std::size_t{3} * all[reference + kIndicesAhead]);
-    }
-    if (reference + kPositionsAhead < all.size()) {
-      for (std::uint32_t c = 0; c < 3; ++c) {
-        const std::uint32_t vertex = mesh.vertex_index(all[reference + kPositionsAhead], c);
-        hwy::Prefetch(positions + vertex * mesh.position_stride_bytes);
-      }
-    }
-  };
+  const std::size_t ahead = all.size() - first;
   std::size_t i = 0;
   for (; i + 4 <= n; i += 4) {
-    for (std::size_t k = 0; k < 4; ++k) fetch_ahead(first + i + k);
+    if (kIndexed && i + kIndicesAhead + 4 <= ahead) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        hwy::Prefetch(mesh.indices + std::size_t{3} * ids[i + kIndicesAhead + k]);
+      }
+      for (std::size_t k = 0; k < 4; ++k) {
+        for (std::uint32_t c = 0; c < 3; c += 2) {
+          hwy::Prefetch(positions + index(ids[i + kPositionsAhead + k], c) * stride);
+        }
+      }
+    }
     for (std::uint32_t c = 0; c < 3; ++c) {
-      const auto p0 = position(mesh.vertex_index(ids[i], c));
-      const auto p1 = position(mesh.vertex_index(ids[i + 1], c));
-      const auto p2 = position(mesh.vertex_index(ids[i + 2], c));
-      const auto p3 = position(mesh.vertex_index(ids[i + 3], c));
+      const auto p0 = position(index(ids[i], c));
+      const auto p1 = position(index(ids[i + 1], c));
+      const auto p2 = position(index(ids[i + 2], c));
+      const auto p3 = position(index(ids[i + 3], c));
       lo = hn::Min(lo, hn::Min(hn::Min(p0, p1), hn::Min(p2, p3)));
       hi = hn::Max(hi, hn::Max(hn::Max(p0, p1), hn::Max(p2, p3)));
       V4 x, y, z;
@@ -103,9 +105,8 @@ Box3 CopyTriangles(const MeshView& mesh, std::span<const std::uint32_t> all, std
     }
   }
   for (; i < n; ++i) {
-    fetch_ahead(first + i);
     for (std::uint32_t c = 0; c < 3; ++c) {
-      const auto p = position(mesh.vertex_index(ids[i], c));
+      const auto p = position(index(ids[i], c));
       lo = hn::Min(lo, p);
       hi = hn::Max(hi, p);
       HWY_ALIGN float lanes[4];
@@ -117,6 +118,13 @@ Box3 CopyTriangles(const MeshView& mesh, std::span<const std::uint32_t> all, std
   hn::Store(lo, d4, box);
   hn::Store(hi, d4, box + 4);
   return {{box[0], box[1], box[2]}, {box[4], box[5], box[6]}};
+}
+
+Box3 CopyTriangles(const MeshView& mesh, std::span<const std::uint32_t> all, std::uint32_t first,
+                   std::uint32_t count, float* rows) {
+  return mesh.indices != nullptr
+             ? Copy<true>(mesh, all, first, count, rows)
+             : Copy<false>(mesh, all, first, count, rows);
 }
 
 #endif
