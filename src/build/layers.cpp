@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "build/layers.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -41,6 +43,9 @@ void list_cells(const Buckets& buckets, std::size_t ids, Layers& layers) {
   Layers::TopCell last;
   last.first = static_cast<std::uint32_t>(ids);
   layers.cells.push_back(last);
+  for (std::size_t j = 0; j < count; ++j) {
+    layers.cells[j].count = layers.cells[j + 1].first - layers.cells[j].first;
+  }
 
   layers.chunk_count = 0;
   for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
@@ -53,6 +58,26 @@ void list_cells(const Buckets& buckets, std::size_t ids, Layers& layers) {
     Layers::Chunk& chunk = layers.chunks[layers.chunk_count++];
     chunk.begin = begin;
     chunk.end = end;
+  }
+}
+
+// Takes the large triangles out of the cells they do not overlap.
+void drop_large(const Grid& grid, const Layers::Chunk& chunk, std::span<std::uint32_t> ids,
+                Layers& layers) {
+  for (std::size_t j = chunk.begin; j < chunk.end; ++j) {
+    Layers::TopCell& cell = layers.cells[j];
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < cell.count; ++i) {
+      const std::uint32_t id = ids[cell.first + i];
+      if ((layers.is_large[id / 64] >> id % 64 & 1) != 0) {
+        const auto large = std::lower_bound(
+            layers.large.begin(), layers.large.end(), id,
+            [](const LargeTriangle& t, std::uint32_t wanted) { return t.id() < wanted; });
+        if (!large->overlaps(grid, cell.code)) continue;
+      }
+      ids[cell.first + kept++] = id;
+    }
+    cell.count = kept;
   }
 }
 
@@ -83,16 +108,21 @@ void emit_top(const Grid& grid, Layers& layers, std::vector<Node>& nodes) {
     const Grid::Split split = grid.split_below(node.upper_code, node.m);
     nodes[--next] = Node::inner(split.axis, split.position, node.upper);
   };
+  const Layers::TopCell* above = nullptr;
   for (std::size_t c = layers.chunk_count; c-- > 0;) {
     const Layers::Chunk& chunk = layers.chunks[c];
     for (std::size_t j = chunk.end; j-- > chunk.begin;) {
       Layers::TopCell& cell = layers.cells[j];
+      if (cell.count == 0) continue;
+      if (above != nullptr) {
+        // The node between this cell and the one above. Open nodes under it have both children.
+        const int m = std::bit_width(above->code ^ cell.code) - 1;
+        while (open_count > 0 && open[open_count - 1].m < m) close();
+        open[open_count++] = {m, above->code, next};
+      }
+      above = &cell;
       next -= nodes_end(layers, chunk, j) - cell.node_first;
       cell.node_place = next;
-      if (j == 0) break;
-      const int m = std::bit_width(layers.cells[j - 1].code ^ cell.code) - 1;
-      while (open_count > 0 && open[open_count - 1].m < m) close();
-      open[open_count++] = {m, cell.code, next};
     }
   }
   while (open_count > 0) close();
@@ -108,12 +138,41 @@ std::uint64_t layer_bytes_per_reference() {
   constexpr std::uint64_t leaves = extra < 0 ? (references >> -extra) + 1 : references;
   // In the chunks' output, which grows by doubling, and in the tree.
   return (2 + 1) * (references * sizeof(std::uint32_t) + 2 * leaves * sizeof(Node)) +
-         sizeof(Layers::TopCell);
+         sizeof(Layers::TopCell) +
+         // Each large one has more than large_cells references.
+         (sizeof(LargeTriangle) + sizeof(std::uint32_t)) / kRealtimeRule.large_cells + 1;
+}
+
+void find_large(const MeshView& mesh, const Grid& grid, std::span<const CodeBox> boxes,
+                int box_shift, Layers& layers) {
+  layers.large.clear();
+  tbb::combinable<std::vector<std::uint32_t>> found;
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, boxes.size(), 16384), [&](const auto& range) {
+        for (std::size_t t = range.begin(); t < range.end(); ++t) {
+          // A box whose codes differ in the last bits only has no more cells than these make.
+          constexpr std::uint32_t few = kRealtimeRule.large_cells;
+          if ((boxes[t].lo ^ boxes[t].hi) >> box_shift < few) continue;
+          const auto id = static_cast<std::uint32_t>(t);
+          if (LargeTriangle::is_large(grid, mesh.triangle(id))) found.local().push_back(id);
+        }
+      });
+  std::vector<std::uint32_t> ids;
+  found.combine_each([&](const auto& part) { ids.insert(ids.end(), part.begin(), part.end()); });
+  std::sort(ids.begin(), ids.end());
+  for (const std::uint32_t id : ids) layers.large.emplace_back(grid, id, mesh.triangle(id));
+  if (ids.empty()) return;
+  layers.is_large.assign(boxes.size() / 64 + 1, 0);
+  for (const std::uint32_t id : ids) layers.is_large[id / 64] |= std::uint64_t{1} << id % 64;
 }
 
 void build_layers(const MeshView& mesh, const Grid& grid, const Buckets& buckets,
-                  std::span<const std::uint32_t> ids, Simd simd, Layers& layers) {
+                  std::span<std::uint32_t> ids, Simd simd, Layers& layers) {
   list_cells(buckets, ids.size(), layers);
+  if (!layers.large.empty()) {
+    tbb::parallel_for(std::size_t{0}, layers.chunk_count,
+                      [&](std::size_t c) { drop_large(grid, layers.chunks[c], ids, layers); });
+  }
   tbb::parallel_for(std::size_t{0}, layers.chunk_count, [&](std::size_t c) {
     Layers::Chunk& chunk = layers.chunks[c];
     LayerOutput& output = chunk.output;
@@ -124,7 +183,8 @@ void build_layers(const MeshView& mesh, const Grid& grid, const Buckets& buckets
       Layers::TopCell& cell = layers.cells[j];
       cell.node_first = static_cast<std::uint32_t>(output.node_count);
       cell.id_first = static_cast<std::uint32_t>(output.id_count);
-      builder.build(mesh, ids, cell.first, layers.cells[j + 1].first, box_of(grid, cell.code),
+      if (cell.count == 0) continue;
+      builder.build(mesh, ids, cell.first, cell.first + cell.count, box_of(grid, cell.code),
                     grid.depth(), simd, output);
     }
   });
@@ -132,16 +192,17 @@ void build_layers(const MeshView& mesh, const Grid& grid, const Buckets& buckets
 
 Status assemble(const Grid& grid, Layers& layers, std::vector<Node>& nodes,
                 std::vector<std::uint32_t>& ids) {
-  const std::size_t cells = layers.cells.size() - 1;
-  std::uint64_t node_count = cells - 1, id_count = 0;
+  std::uint64_t cells = 0, node_count = 0, id_count = 0;
   for (std::size_t c = 0; c < layers.chunk_count; ++c) {
     const Layers::Chunk& chunk = layers.chunks[c];
     for (std::size_t j = chunk.begin; j < chunk.end; ++j) {
       layers.cells[j].id_place = static_cast<std::uint32_t>(id_count + layers.cells[j].id_first);
+      cells += layers.cells[j].count != 0;
     }
     node_count += chunk.output.node_count;
     id_count += chunk.output.id_count;
   }
+  node_count += cells - 1;  // those above the cells
   if (node_count >= kMaxNodes) {
     return {StatusCode::resource_limit, "build: the tree would have " + std::to_string(node_count) +
                                             " nodes; at most " + std::to_string(kMaxNodes - 1) +

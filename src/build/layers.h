@@ -15,6 +15,7 @@
 #include "fasttree/mesh.h"
 #include "fasttree/tree.h"
 #include "grid/grid.h"
+#include "grid/large_triangle.h"
 
 namespace fasttree::build {
 
@@ -24,6 +25,7 @@ struct Layers {
   struct TopCell {
     std::uint32_t code = 0;
     std::uint32_t first = 0;  ///< of its ids
+    std::uint32_t count = 0;  ///< may be 0 where only large triangles' boxes reach the cell
     // Its subtree in its chunk's output, and where the whole tree has it.
     std::uint32_t node_first = 0;
     std::uint32_t id_first = 0;
@@ -36,6 +38,8 @@ struct Layers {
     std::size_t end = 0;
     LayerOutput output;
   };
+  std::vector<LargeTriangle> large;  ///< by id
+  std::vector<std::uint64_t> is_large;  ///< a bit a triangle, where there are any
   std::vector<TopCell> cells;
   std::vector<Chunk> chunks;
   std::size_t chunk_count = 0;
@@ -45,9 +49,14 @@ struct Layers {
 /// Bytes that the layers and the tree may take for each reference of the top grid.
 std::uint64_t layer_bytes_per_reference();
 
-/// Makes the layers of all cells that sort_buckets has left.
+/// Finds the large triangles from the boxes, whose codes are `box_shift` levels deeper than the grid.
+void find_large(const MeshView& mesh, const Grid& grid, std::span<const CodeBox> boxes,
+                int box_shift, Layers& layers);
+
+/// Makes the layers of all cells that sort_buckets has left. Takes large triangles out of `ids`
+/// where they overlap nothing.
 void build_layers(const MeshView& mesh, const Grid& grid, const Buckets& buckets,
-                  std::span<const std::uint32_t> ids, Simd simd, Layers& layers);
+                  std::span<std::uint32_t> ids, Simd simd, Layers& layers);
 
 /// Puts the tree together. resource_limit where it has more nodes than a tree can have.
 Status assemble(const Grid& grid, Layers& layers, std::vector<Node>& nodes,

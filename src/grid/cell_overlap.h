@@ -20,6 +20,20 @@ inline constexpr float kOverlapSlack = 0x1p-18f;   ///< 64 units in the last pla
 inline constexpr float kOverlapLeast = 0x1p-100f;  ///< of a slack: what underflow can lose
 inline constexpr float kOverlapLargest = 0x1p20f;  ///< larger triangles overlap everything
 
+/// A triangle's corners in units of the grid's cells.
+inline std::array<std::array<float, 3>, 3> in_cells(const Grid& grid,
+                                             const std::array<Vec3, 3>& triangle) {
+  std::array<std::array<float, 3>, 3> corners;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const AxisQuantiser& q = grid.quantiser(a);
+    const float finest_to_here = 1.0f / static_cast<float>(1 << (kMaxAxisBits - grid.bits()[a]));
+    for (std::size_t c = 0; c < 3; ++c) {
+      corners[c][a] = ((triangle[c][a] - q.lo) * q.scale) * finest_to_here;
+    }
+  }
+  return corners;
+}
+
 class CellOverlap {
  public:
   /// `corner[c][a]`: corners in units of cells; `origin`: the cell that at() counts from.

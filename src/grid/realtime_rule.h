@@ -16,6 +16,10 @@ struct RealtimeRule {
   /// The top grid has at most this many references a triangle.
   double top_growth = 3.0;
 
+  /// A triangle whose box has more cells of the top grid than this is put only into those it
+  /// overlaps.
+  std::uint32_t large_cells = 64;
+
   /// A list of at most this many triangles is a leaf.
   std::uint32_t leaf_size = 160;
   /// A layer over n triangles has at most ceil(log2 n) + this many levels ...

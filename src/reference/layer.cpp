@@ -45,20 +45,6 @@ Grid choose_grid(const MeshView& mesh, const LayerList& list, const Box3& box) {
   }
 }
 
-// A triangle's corners in units of the grid's cells.
-std::array<std::array<float, 3>, 3> in_cells(const Grid& grid,
-                                             const std::array<Vec3, 3>& triangle) {
-  std::array<std::array<float, 3>, 3> corners;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const AxisQuantiser& q = grid.quantiser(a);
-    const float finest_to_here = 1.0f / static_cast<float>(1 << (kMaxAxisBits - grid.bits()[a]));
-    for (std::size_t c = 0; c < 3; ++c) {
-      corners[c][a] = ((triangle[c][a] - q.lo) * q.scale) * finest_to_here;
-    }
-  }
-  return corners;
-}
-
 // Calls put(code) for each cell that gets the triangle.
 template <typename Put>
 void for_each_cell(const Grid& grid, const std::array<Vec3, 3>& triangle, const Put& put) {

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "grid/large_triangle.h"
 #include "grid/realtime_rule.h"
 #include "reference/layer.h"
 #include "reference/leaf_node.h"
@@ -24,13 +26,25 @@ std::uint64_t planned_bytes(std::uint64_t references) {
   return references * (3 * 8 + kRealtimeRule.whole_growth * (2 * 4 + 2 * sizeof(Node)));
 }
 
-Layer top_layer(const Grid& grid, const LeafTable& leaves, const References& sorted) {
+Layer top_layer(const MeshView& mesh, const Grid& grid, const LeafTable& leaves,
+                const References& sorted) {
   Layer top;
   top.grid = grid;
+  std::map<std::uint32_t, LargeTriangle> large;
+  for (std::uint32_t id = 0; id < mesh.triangle_count; ++id) {
+    const auto triangle = mesh.triangle(id);
+    if (LargeTriangle::is_large(grid, triangle)) large.emplace(id, LargeTriangle(grid, id, triangle));
+  }
   for (std::size_t j = 0; j < leaves.size(); ++j) {
     LayerList list;
-    const auto first = sorted.ids.begin() + leaves.first[j];
-    list.ids.assign(first, first + leaves.count[j]);
+    for (std::uint32_t i = 0; i < leaves.count[j]; ++i) {
+      const std::uint32_t id = sorted.ids[leaves.first[j] + i];
+      const auto found = large.find(id);
+      if (found == large.end() || found->second.overlaps(grid, leaves.code[j])) {
+        list.ids.push_back(id);
+      }
+    }
+    if (list.ids.empty()) continue;
     list.cell = grid.bounds();
     for (std::size_t a = 0; a < 3; ++a) {
       const std::uint32_t k = grid.coordinate_of(leaves.code[j], a);
@@ -127,7 +141,7 @@ Result<Tree> realtime_build(const MeshView& mesh, const BuildSettings& settings,
   Layer top;
   clock.stage("radix_sort", 0.10, 0.30, [&] {
     const References sorted = radix_sort(morton_code(mesh, grid, references));
-    top = top_layer(grid, leaf_node(sorted), sorted);
+    top = top_layer(mesh, grid, leaf_node(sorted), sorted);
   });
   Emitter emitter(mesh);
   clock.stage("layers", 0.30, 1.00, [&] {
