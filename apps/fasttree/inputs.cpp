@@ -46,7 +46,8 @@ void BuildOptions::declare(Options& options) {
   options.choice(settings.profile, "--profile", "Builder", profiles());
   options.choice(settings.axes, "--axes", "Which axis each level halves (profile paper)",
                  axis_schedules());
-  options.depth(settings.depth, "--depth", "Levels of the (top) grid (profiles realtime and paper)", 30);
+  options.depth(settings.depth, "--depth", "Levels of the (top) grid (profiles realtime and paper)",
+                30);
   options.choice(settings.implementation, "--implementation",
                  "Parallel, or the definition literally (profiles realtime and paper)",
                  Choices<Implementation>{{"fast", Implementation::fast},

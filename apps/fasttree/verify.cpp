@@ -43,7 +43,8 @@ class VerifyCommand : public Command {
   const char* details() const override {
     return "Builds the scene's tree, or loads a tree file (--mesh names its scene), and checks\n"
            "  - every invariant of the tree, and that tree and mesh belong together;\n"
-           "  - for profiles realtime and paper, that the fast and the reference builder, with and\n"
+           "  - for profiles realtime and paper, that the fast and the reference builder, with "
+           "and\n"
            "    without SIMD, on one thread and on all, make these same bytes;\n"
            "  - that rays find what the oracle finds: to the bit against brute force; against\n"
            "    Embree within rounding, and to the bit against brute force where the two differ.\n"

@@ -64,10 +64,10 @@ typedef struct ft_mesh {
 /* ---- Building ---- */
 
 typedef enum ft_profile {
-  FT_PROFILE_PAPER = 0,     /* grid, Morton codes, path compression: the six steps of FastTree */
-  FT_PROFILE_SAH_EXACT = 1, /* exact surface-area heuristic with perfect splits */
+  FT_PROFILE_PAPER = 0,      /* grid, Morton codes, path compression: the six steps of FastTree */
+  FT_PROFILE_SAH_EXACT = 1,  /* exact surface-area heuristic with perfect splits */
   FT_PROFILE_SAH_BINNED = 2, /* binned surface-area heuristic */
-  FT_PROFILE_REALTIME = 3   /* least time for build plus trace */
+  FT_PROFILE_REALTIME = 3    /* least time for build plus trace */
 } ft_profile;
 
 typedef enum ft_axis_schedule {
@@ -76,8 +76,9 @@ typedef enum ft_axis_schedule {
 } ft_axis_schedule;
 
 typedef enum ft_implementation {
-  FT_IMPLEMENTATION_FAST = 0,     /* parallel, vectorised */
-  FT_IMPLEMENTATION_REFERENCE = 1 /* the definition literally, one thread; FT_PROFILE_PAPER and _REALTIME */
+  FT_IMPLEMENTATION_FAST = 0, /* parallel, vectorised */
+  FT_IMPLEMENTATION_REFERENCE =
+      1 /* the definition literally, one thread; FT_PROFILE_PAPER and _REALTIME */
 } ft_implementation;
 
 typedef enum ft_simd {
@@ -109,10 +110,10 @@ typedef struct ft_build_settings {
   void* progress_user;     /* handed to progress */
 } ft_build_settings;
 
-#define FT_BUILD_SETTINGS_INIT                                                                   \
-  {                                                                                              \
-    sizeof(ft_build_settings), FT_PROFILE_REALTIME, FT_AXES_CYCLIC, FT_AUTO_DEPTH, 1, 6.0, 0,    \
-        15.0, 20.0, FT_IMPLEMENTATION_FAST, FT_SIMD_WIDEST, 0, 0, NULL, NULL                     \
+#define FT_BUILD_SETTINGS_INIT                                                                \
+  {                                                                                           \
+    sizeof(ft_build_settings), FT_PROFILE_REALTIME, FT_AXES_CYCLIC, FT_AUTO_DEPTH, 1, 6.0, 0, \
+        15.0, 20.0, FT_IMPLEMENTATION_FAST, FT_SIMD_WIDEST, 0, 0, NULL, NULL                  \
   }
 
 /* What the last build did. */

@@ -42,7 +42,7 @@ struct Hit {
 /// What is known of the rays of a batch. It changes the time they take, never their results.
 enum class RayOrder : std::uint8_t {
   incoherent = 0,  ///< anything: each ray goes its own way
-  coherent = 1,    ///< neighbours in the batch start and go nearly alike, as the rays of 8 x 8 pixels
+  coherent = 1,  ///< neighbours in the batch start and go nearly alike, as the rays of 8 x 8 pixels
 };
 
 /// What tracing cost, for quality figures and heat maps.

@@ -50,7 +50,9 @@ struct Node {
   static Node inner(std::uint32_t axis, float split, std::uint32_t upper) {
     return {upper << 2 | axis, std::bit_cast<std::uint32_t>(split)};
   }
-  static constexpr Node leaf(std::uint32_t first, std::uint32_t count) { return {count << 2 | kLeaf, first}; }
+  static constexpr Node leaf(std::uint32_t first, std::uint32_t count) {
+    return {count << 2 | kLeaf, first};
+  }
 
   bool is_leaf() const { return (word0 & 3) == kLeaf; }
   std::uint32_t axis() const { return word0 & 3; }

@@ -147,16 +147,18 @@ void find_large(const MeshView& mesh, const Grid& grid, std::span<const CodeBox>
                 int box_shift, Layers& layers) {
   layers.large.clear();
   tbb::combinable<std::vector<std::uint32_t>> found;
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, boxes.size(), 16384), [&](const auto& range) {
-        for (std::size_t t = range.begin(); t < range.end(); ++t) {
-          // A box whose codes differ in the last bits only has no more cells than these make.
-          constexpr std::uint32_t few = kRealtimeRule.large_cells;
-          if ((boxes[t].lo ^ boxes[t].hi) >> box_shift < few) continue;
-          const auto id = static_cast<std::uint32_t>(t);
-          if (LargeTriangle::is_large(grid, mesh.triangle(id))) found.local().push_back(id);
-        }
-      });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, boxes.size(), 16384),
+                    [&](const auto& range) {
+                      for (std::size_t t = range.begin(); t < range.end(); ++t) {
+                        // A box whose codes differ in the last bits only has no more cells than
+                        // these make.
+                        constexpr std::uint32_t few = kRealtimeRule.large_cells;
+                        if ((boxes[t].lo ^ boxes[t].hi) >> box_shift < few) continue;
+                        const auto id = static_cast<std::uint32_t>(t);
+                        if (LargeTriangle::is_large(grid, mesh.triangle(id)))
+                          found.local().push_back(id);
+                      }
+                    });
   std::vector<std::uint32_t> ids;
   found.combine_each([&](const auto& part) { ids.insert(ids.end(), part.begin(), part.end()); });
   std::sort(ids.begin(), ids.end());

@@ -38,7 +38,7 @@ struct Layers {
     std::size_t end = 0;
     LayerOutput output;
   };
-  std::vector<LargeTriangle> large;  ///< by id
+  std::vector<LargeTriangle> large;     ///< by id
   std::vector<std::uint64_t> is_large;  ///< a bit a triangle, where there are any
   std::vector<TopCell> cells;
   std::vector<Chunk> chunks;
@@ -49,7 +49,8 @@ struct Layers {
 /// Bytes that the layers and the tree may take for each reference of the top grid.
 std::uint64_t layer_bytes_per_reference();
 
-/// Finds the large triangles from the boxes, whose codes are `box_shift` levels deeper than the grid.
+/// Finds the large triangles from the boxes, whose codes are `box_shift` levels deeper than the
+/// grid.
 void find_large(const MeshView& mesh, const Grid& grid, std::span<const CodeBox> boxes,
                 int box_shift, Layers& layers);
 

@@ -13,11 +13,10 @@ Status realtime_build(const MeshView& mesh, const BuildSettings& settings, Works
   Status status = sort_into_leaves(mesh, top_grid_settings(settings), layer_bytes_per_reference(),
                                    0.4, clock, w, w.top_ids, stats, top);
   if (!status.ok()) return status;
-  clock.stage("layers", 0.4, 0.9,
-              [&] {
-                find_large(mesh, top.grid, w.boxes, top.buckets.box_shift(), w.layers);
-                build_layers(mesh, top.grid, w.buckets, w.top_ids, settings.simd, w.layers);
-              });
+  clock.stage("layers", 0.4, 0.9, [&] {
+    find_large(mesh, top.grid, w.boxes, top.buckets.box_shift(), w.layers);
+    build_layers(mesh, top.grid, w.buckets, w.top_ids, settings.simd, w.layers);
+  });
   clock.stage("internal_node", 0.9, 1.0, [&] {
     if (top.references == 0) {
       tree.nodes.assign(1, Node::leaf(0, 0));

@@ -43,12 +43,11 @@ Status read_settings(const char* call, const ft_build_settings* from, Settings& 
     if (Status status = read_struct(call, "settings", from, s); !status.ok()) return status;
   }
   BuildSettings& b = to.build;
-  for (const Status& status :
-       {read_choice(call, "profile", s.profile, kLastProfile, b.profile),
-        read_choice(call, "axes", s.axes, AxisSchedule::longest, b.axes),
-        read_choice(call, "implementation", s.implementation, Implementation::reference,
-                    b.implementation),
-        read_choice(call, "simd", s.simd, Simd::widest, b.simd)}) {
+  for (const Status& status : {read_choice(call, "profile", s.profile, kLastProfile, b.profile),
+                               read_choice(call, "axes", s.axes, AxisSchedule::longest, b.axes),
+                               read_choice(call, "implementation", s.implementation,
+                                           Implementation::reference, b.implementation),
+                               read_choice(call, "simd", s.simd, Simd::widest, b.simd)}) {
     if (!status.ok()) return status;
   }
   b.depth = s.depth;

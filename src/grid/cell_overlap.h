@@ -22,7 +22,7 @@ inline constexpr float kOverlapLargest = 0x1p20f;  ///< larger triangles overlap
 
 /// A triangle's corners in units of the grid's cells.
 inline std::array<std::array<float, 3>, 3> in_cells(const Grid& grid,
-                                             const std::array<Vec3, 3>& triangle) {
+                                                    const std::array<Vec3, 3>& triangle) {
   std::array<std::array<float, 3>, 3> corners;
   for (std::size_t a = 0; a < 3; ++a) {
     const AxisQuantiser& q = grid.quantiser(a);

@@ -14,9 +14,7 @@ namespace fasttree {
 class LargeTriangle {
  public:
   LargeTriangle(const Grid& grid, std::uint32_t id, const std::array<Vec3, 3>& triangle)
-      : id_(id),
-        origin_(grid.cells_of(triangle).lo),
-        overlap_(in_cells(grid, triangle), origin_) {}
+      : id_(id), origin_(grid.cells_of(triangle).lo), overlap_(in_cells(grid, triangle), origin_) {}
 
   static bool is_large(const Grid& grid, const std::array<Vec3, 3>& triangle) {
     return grid.cells_of(triangle).count() > kRealtimeRule.large_cells;

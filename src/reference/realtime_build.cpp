@@ -33,7 +33,8 @@ Layer top_layer(const MeshView& mesh, const Grid& grid, const LeafTable& leaves,
   std::map<std::uint32_t, LargeTriangle> large;
   for (std::uint32_t id = 0; id < mesh.triangle_count; ++id) {
     const auto triangle = mesh.triangle(id);
-    if (LargeTriangle::is_large(grid, triangle)) large.emplace(id, LargeTriangle(grid, id, triangle));
+    if (LargeTriangle::is_large(grid, triangle))
+      large.emplace(id, LargeTriangle(grid, id, triangle));
   }
   for (std::size_t j = 0; j < leaves.size(); ++j) {
     LayerList list;

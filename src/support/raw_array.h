@@ -28,7 +28,7 @@ class RawArray {
     if (size > capacity_) {
       // A little more, so that a scene that grows slowly does not allocate in every frame.
       const std::size_t capacity = size + size / 8;
-      T* const fresh = static_cast<T*>(::operator new(capacity * sizeof(T), std::align_val_t{64}));
+      T* const fresh = static_cast<T*>(::operator new (capacity * sizeof(T), std::align_val_t{64}));
       release(data_);
       data_ = fresh;
       capacity_ = capacity;
@@ -43,7 +43,7 @@ class RawArray {
   const T& operator[](std::size_t i) const { return data_[i]; }
 
  private:
-  static void release(T* data) { ::operator delete(data, std::align_val_t{64}); }
+  static void release(T* data) { ::operator delete (data, std::align_val_t{64}); }
   void swap(RawArray& other) {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);

@@ -3,6 +3,7 @@
 #include "trace/leaf_triangles.h"
 
 #include <hwy/cache_control.h>
+
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -45,9 +46,9 @@ using V4 = hn::Vec<D4>;
 HWY_INLINE void transpose(V4 a, V4 b, V4 c, V4 d, V4& x, V4& y, V4& z) {
   const D4 d4;
   const hn::Repartition<double, D4> d2;
-  const auto ab = hn::InterleaveLower(d4, a, b);     // ax bx ay by
-  const auto cd = hn::InterleaveLower(d4, c, d);     // cx dx cy dy
-  const auto ab_z = hn::InterleaveUpper(d4, a, b);   // az bz
+  const auto ab = hn::InterleaveLower(d4, a, b);    // ax bx ay by
+  const auto cd = hn::InterleaveLower(d4, c, d);    // cx dx cy dy
+  const auto ab_z = hn::InterleaveUpper(d4, a, b);  // az bz
   const auto cd_z = hn::InterleaveUpper(d4, c, d);
   x = hn::BitCast(d4, hn::InterleaveLower(d2, hn::BitCast(d2, ab), hn::BitCast(d2, cd)));
   y = hn::BitCast(d4, hn::InterleaveUpper(d2, hn::BitCast(d2, ab), hn::BitCast(d2, cd)));
@@ -122,9 +123,8 @@ HWY_INLINE Box3 Copy(const MeshView& mesh, std::span<const std::uint32_t> all, s
 
 Box3 CopyTriangles(const MeshView& mesh, std::span<const std::uint32_t> all, std::uint32_t first,
                    std::uint32_t count, float* rows) {
-  return mesh.indices != nullptr
-             ? Copy<true>(mesh, all, first, count, rows)
-             : Copy<false>(mesh, all, first, count, rows);
+  return mesh.indices != nullptr ? Copy<true>(mesh, all, first, count, rows)
+                                 : Copy<false>(mesh, all, first, count, rows);
 }
 
 #endif

@@ -23,23 +23,25 @@ namespace HWY_NAMESPACE {
 
 using Lanes64 = float[kPacket];
 
-/// Boxes are entered at the largest of `near bound * reciprocal - near_offset` and left at the least
-/// of `far bound * reciprocal - far_offset`. The offsets make every box a thickness larger: that of
-/// the walk through the kd-tree (traversal.h), 24 u R, and 16 u R for what is rounded here:
+/// Boxes are entered at the largest of `near bound * reciprocal - near_offset` and left at the
+/// least of `far bound * reciprocal - far_offset`. The offsets make every box a thickness larger:
+/// that of the walk through the kd-tree (traversal.h), 24 u R, and 16 u R for what is rounded here:
 /// coordinates relative to the centre, reciprocal, products and sums are each off by u R at most,
 /// fused or not.
 struct HWY_ALIGN RayBlock {
   Lanes64 origin[3];
   Lanes64 reciprocal[3], near_offset[3], far_offset[3];
-  Lanes64 sx, sy, sz, t_min, t;  // t: what is nearest so far, at first t_max
+  Lanes64 sx, sy, sz, t_min, t;          // t: what is nearest so far, at first t_max
   HWY_ALIGN std::uint32_t way[kPacket];  // WayOf: octant and longest axis
-  std::uint64_t valid;    // the others hit nothing
-  std::uint64_t tame;     // the others have numbers for which the bounds of the errors do not hold
+  std::uint64_t valid;                   // the others hit nothing
+  std::uint64_t tame;  // the others have numbers for which the bounds of the errors do not hold
   std::uint64_t in_bounds;  // of the tame ones: the others miss the scene
 };
 
 /// Bit a of the octant: the ray goes down axis a.
-HWY_INLINE std::uint32_t OctantOf(std::uint32_t way) { return way & 7; }
+HWY_INLINE std::uint32_t OctantOf(std::uint32_t way) {
+  return way & 7;
+}
 
 /// The axes kx, ky, kz of shear().
 HWY_INLINE std::array<std::uint32_t, 3> AxesOf(std::uint32_t way) {
@@ -52,7 +54,8 @@ HWY_INLINE std::array<std::uint32_t, 3> AxesOf(std::uint32_t way) {
 constexpr float kWideThickness = 40 * 0x1p-24f;
 
 // `rays` holds as many rays as a vector has lanes.
-HWY_INLINE void PrepareRays(const Ray* rays, std::size_t i, const WideScene& scene, RayBlock& block) {
+HWY_INLINE void PrepareRays(const Ray* rays, std::size_t i, const WideScene& scene,
+                            RayBlock& block) {
   const DF d;
   const DU du;
   const hn::RebindToSigned<DF> di;

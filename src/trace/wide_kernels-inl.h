@@ -7,11 +7,11 @@
 #define FASTTREE_TRACE_WIDE_KERNELS_INL_H_
 #endif
 
+#include <hwy/highway.h>
+
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-
-#include <hwy/highway.h>
 
 #include "geometry/triangle_intersection.h"
 #include "trace/wide_layout.h"
@@ -117,7 +117,9 @@ HWY_INLINE bool ForEachHit(const WideLayout& layout, std::uint32_t first, std::u
 
 // Nibbles of a node's children from back to front for an octant: the order itself of the opposite
 // octant, or the order of this one backwards (see WideNode::order).
-HWY_INLINE bool Backwards(std::uint32_t octant) { return (octant & 4) == 0; }
+HWY_INLINE bool Backwards(std::uint32_t octant) {
+  return (octant & 4) == 0;
+}
 HWY_INLINE std::uint32_t OrderOf(std::uint32_t octant) {
   return Backwards(octant) ? octant : octant ^ 7u;
 }
@@ -135,7 +137,8 @@ HWY_INLINE std::size_t Push(const WideNode& node, std::uint32_t index, std::uint
   HWY_ALIGN static constexpr std::uint32_t kShifts[2][16] = {
       {0, 4, 8, 12, 16, 20, 24, 28, 0, 4, 8, 12, 16, 20, 24, 28},
       {28, 24, 20, 16, 12, 8, 4, 0, 28, 24, 20, 16, 12, 8, 4, 0}};
-  const auto low = static_cast<std::uint32_t>(order), high = static_cast<std::uint32_t>(order >> 32);
+  const auto low = static_cast<std::uint32_t>(order),
+             high = static_cast<std::uint32_t>(order >> 32);
   const auto words = hn::ConcatUpperLower(du, hn::Set(du, backwards ? low : high),
                                           hn::Set(du, backwards ? high : low));
   const auto slots = hn::And(hn::Shr(words, hn::Load(du, kShifts[backwards])), hn::Set(du, 15));

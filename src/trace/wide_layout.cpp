@@ -72,7 +72,7 @@ class LayoutMaker {
     std::uint32_t node = 0;  // of the kd-tree; those under it end before `end`
     std::uint32_t end = 0;
     Box3 cell;
-    float worth = 0;  // of being opened; a leaf has none
+    float worth = 0;               // of being opened; a leaf has none
     std::int32_t* link = nullptr;  // to it, in the treelet
   };
   // The kd nodes inside one wide node: inner ones by number, children as ~number.

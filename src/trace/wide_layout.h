@@ -15,14 +15,15 @@ namespace fasttree {
 
 inline constexpr std::uint32_t kWide = 16;
 
-/// Several levels of the kd-tree in one. A child's box is that of what it lists, cut by its cell, so
-/// empty space needs no nodes. Coordinates are relative to WideLayout::centre.
+/// Several levels of the kd-tree in one. A child's box is that of what it lists, cut by its cell,
+/// so empty space needs no nodes. Coordinates are relative to WideLayout::centre.
 struct alignas(64) WideNode {
-  float bound[2][3][kWide];     ///< [lower, upper][axis][child]; no child: infinite, upside down
-  std::uint32_t child[kWide];   ///< inner: index of the node; leaf: first reference
-  std::uint8_t count[kWide];    ///< leaf: triangles, at most kMostInLeaf; inner: 0
+  float bound[2][3][kWide];    ///< [lower, upper][axis][child]; no child: infinite, upside down
+  std::uint32_t child[kWide];  ///< inner: index of the node; leaf: first reference
+  std::uint8_t count[kWide];   ///< leaf: triangles, at most kMostInLeaf; inner: 0
   /// Children from front to back, a nibble each, the first lowest, for rays that go down none of
-  /// the axes, down x, down y, down x and y, and up z. For rays down z: the opposite one, backwards.
+  /// the axes, down x, down y, down x and y, and up z. For rays down z: the opposite one,
+  /// backwards.
   std::uint64_t order[4];
   std::array<std::uint8_t, 16> unused;
 };
@@ -38,8 +39,8 @@ inline constexpr std::uint32_t kMostWideLevels = kMaxTreeDepth + 8;
 inline constexpr std::uint32_t kTriangleRows = 9;
 
 struct WideLayout {
-  Vec3 centre{};  ///< of the scene's bounds
-  RawArray<WideNode> nodes;       ///< room for more than there are; the root is the first
+  Vec3 centre{};             ///< of the scene's bounds
+  RawArray<WideNode> nodes;  ///< room for more than there are; the root is the first
   std::uint32_t node_count = 0;
   /// Reference r of a leaf that begins at `first` with n triangles has its coordinate c at
   /// kTriangleRows * first + c * n + (r - first). Whole vectors may be read at the end.

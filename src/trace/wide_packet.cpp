@@ -26,8 +26,12 @@ namespace HWY_NAMESPACE {
 #if HWY_TARGET == HWY_SCALAR
 
 // Without vectors the kd-tree itself is the better way.
-void PacketClosest(const WideScene&, const WideBatch& batch) { leave_all(batch); }
-void PacketOccluded(const WideScene&, const WideBatch& batch) { leave_all(batch); }
+void PacketClosest(const WideScene&, const WideBatch& batch) {
+  leave_all(batch);
+}
+void PacketOccluded(const WideScene&, const WideBatch& batch) {
+  leave_all(batch);
+}
 
 #else
 namespace {
@@ -53,9 +57,9 @@ struct HWY_ALIGN Packet {
 // b - near_origin or more at the side where boxes are entered, and so on; products of two intervals
 // are reached at their ends.
 struct PacketBounds {
-  std::array<float, 3> near_origin, far_origin;            // relative to the centre
+  std::array<float, 3> near_origin, far_origin;              // relative to the centre
   std::array<float, 3> near_origin_scene, far_origin_scene;  // not
-  std::array<float, 3> least, most;                        // reciprocals
+  std::array<float, 3> least, most;                          // reciprocals
   std::array<float, 3> slack;
   float t_min, t_most;
 };
@@ -78,8 +82,7 @@ HWY_INLINE Interval IntervalOf(const PacketBounds& b, std::uint32_t octant,
     const VF far = hn::Sub(down ? lower(a) : upper(a), hn::Set(d, far_origin[a]));
     const VF least = hn::Set(d, b.least[a]), most = hn::Set(d, b.most[a]);
     const VF slack = hn::Set(d, b.slack[a]);
-    enter = hn::Max(enter,
-                    hn::Sub(hn::Min(hn::Mul(near, least), hn::Mul(near, most)), slack));
+    enter = hn::Max(enter, hn::Sub(hn::Min(hn::Mul(near, least), hn::Mul(near, most)), slack));
     leave = hn::Min(leave, hn::Add(hn::Max(hn::Mul(far, least), hn::Mul(far, most)), slack));
   }
   return {enter, leave};
@@ -189,7 +192,8 @@ HWY_INLINE void TestTriangle(const float* corner_a, std::size_t n, std::uint32_t
   for (std::size_t i = 0; i < kPacket; i += hn::Lanes(d)) {
     const auto wanted = static_cast<std::uint32_t>(rays >> i) & all;
     if (wanted == 0) continue;
-    const VF ox = hn::Load(d, p.rays.origin[p.k[0]] + i), oy = hn::Load(d, p.rays.origin[p.k[1]] + i),
+    const VF ox = hn::Load(d, p.rays.origin[p.k[0]] + i),
+             oy = hn::Load(d, p.rays.origin[p.k[1]] + i),
              oz = hn::Load(d, p.rays.origin[p.k[2]] + i);
     const VF sx = hn::Load(d, p.rays.sx + i), sy = hn::Load(d, p.rays.sy + i);
     const VF az = hn::Sub(q[2], oz), bz = hn::Sub(q[5], oz), cz = hn::Sub(q[8], oz);
@@ -214,15 +218,16 @@ HWY_INLINE void TestTriangle(const float* corner_a, std::size_t n, std::uint32_t
     candidates &= lower.hit | upper.hit << hn::Lanes(DD());
     const VF t = Demote(lower.t, upper.t);
     const VF best = hn::Load(d, p.rays.t + i);
-    const auto in_range = hn::And(hn::And(hn::Ge(t, hn::Load(d, p.rays.t_min + i)), hn::Le(t, best)),
-                                  hn::Lt(hn::Abs(t), hn::Set(d, HUGE_VALF)));
+    const auto in_range =
+        hn::And(hn::And(hn::Ge(t, hn::Load(d, p.rays.t_min + i)), hn::Le(t, best)),
+                hn::Lt(hn::Abs(t), hn::Set(d, HUGE_VALF)));
     if (kAny) {
       p.alive &= ~(std::uint64_t{candidates & BitsOf(d, in_range)} << i);
       continue;
     }
     const auto ids = hn::Set(du, id), best_ids = hn::Load(du, p.id + i);
-    const auto nearer = hn::And(
-        in_range, hn::Or(hn::Lt(t, best), hn::RebindMask(d, hn::Lt(ids, best_ids))));
+    const auto nearer =
+        hn::And(in_range, hn::Or(hn::Lt(t, best), hn::RebindMask(d, hn::Lt(ids, best_ids))));
     candidates &= BitsOf(d, nearer);
     if (candidates == 0) continue;
     const auto accepted = MaskOf(d, candidates);
@@ -283,9 +288,8 @@ HWY_INLINE void TestLeaf(const WideLayout& layout, std::uint32_t first, std::uin
   HWY_ALIGN std::uint32_t left[(kMostInLeaf + 3) / 4];
   std::uint32_t survivors = 0;
   for (std::uint32_t i = 0, k = 0; i < n; i += lanes, ++k) {
-    const auto row = [&](std::size_t c, std::size_t a) HWY_ATTR {
-      return hn::LoadU(d, rows + (3 * c + a) * n + i);
-    };
+    const auto row = [&](std::size_t c, std::size_t a)
+                         HWY_ATTR { return hn::LoadU(d, rows + (3 * c + a) * n + i); };
     const Interval t = IntervalOf(
         b, p.octant, b.near_origin_scene, b.far_origin_scene,
         [&](std::size_t a) HWY_ATTR { return hn::Min(hn::Min(row(0, a), row(1, a)), row(2, a)); },
@@ -320,8 +324,8 @@ HWY_INLINE float MostOf(const float* lanes, float sign, std::uint64_t members) {
   VF most = lowest;
   for (std::size_t i = 0; i < kPacket; i += hn::Lanes(d)) {
     const auto member = MaskOf(d, static_cast<std::uint32_t>(members >> i) & all);
-    most = hn::Max(most, hn::IfThenElse(member, hn::Mul(hn::Load(d, lanes + i), hn::Set(d, sign)),
-                                        lowest));
+    most = hn::Max(
+        most, hn::IfThenElse(member, hn::Mul(hn::Load(d, lanes + i), hn::Set(d, sign)), lowest));
   }
   return hn::GetLane(hn::MaxOfLanes(d, most));
 }

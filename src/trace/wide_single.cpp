@@ -23,8 +23,12 @@ namespace HWY_NAMESPACE {
 #if HWY_TARGET == HWY_SCALAR
 
 // Without vectors the kd-tree itself is the better way.
-void SingleClosest(const WideScene&, const WideBatch& batch) { leave_all(batch); }
-void SingleOccluded(const WideScene&, const WideBatch& batch) { leave_all(batch); }
+void SingleClosest(const WideScene&, const WideBatch& batch) {
+  leave_all(batch);
+}
+void SingleOccluded(const WideScene&, const WideBatch& batch) {
+  leave_all(batch);
+}
 
 #else
 namespace {

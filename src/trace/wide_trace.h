@@ -21,8 +21,8 @@ struct WideScene {
 /// Rays of a packet.
 inline constexpr std::size_t kPacket = 64;
 
-/// Traces rays one by one. Those that are not tame (WideRay) are left alone, and appended to `wild`.
-/// Exactly one of `hits` and `flags` is used; `counters` may be null.
+/// Traces rays one by one. Those that are not tame (WideRay) are left alone, and appended to
+/// `wild`. Exactly one of `hits` and `flags` is used; `counters` may be null.
 struct WideBatch {
   std::span<const Ray> rays;
   std::span<Hit> hits;
