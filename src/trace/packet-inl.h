@@ -79,17 +79,16 @@ HWY_INLINE void VisitNode(const WideLayout& layout, std::uint32_t index, const P
                           Packet& p) {
   const DF d;
   const WideNode& node = layout.nodes[index];
-  HWY_ALIGN float enter[kWide];
-  HWY_ALIGN float leave[kWide];
-  for (std::size_t i = 0; i < kWide; i += hn::Lanes(d)) {
+  Intervals children;
+  for (std::size_t k = 0, i = 0; k < Intervals::kVectors; ++k, i += hn::Lanes(d)) {
     const Interval t = IntervalOf(
         b, p.octant, b.near_origin, b.far_origin,
         [&](std::size_t a) HWY_ATTR { return hn::Load(d, node.bound[0][a] + i); },
         [&](std::size_t a) HWY_ATTR { return hn::Load(d, node.bound[1][a] + i); });
-    hn::Store(t.enter, d, enter + i);
-    hn::Store(t.leave, d, leave + i);
+    children.enter[k] = t.enter;
+    children.leave[k] = t.leave;
   }
-  p.depth = Push(node, index, p.octant, enter, leave, p.entries, p.enters, p.depth);
+  p.depth = Push(node, index, p.octant, children, p.entries, p.enters, p.depth);
 }
 
 // The rays that a child's box may concern. For a node it is enough to know that there are some, so

@@ -124,16 +124,22 @@ HWY_INLINE std::uint32_t OrderOf(std::uint32_t octant) {
   return Backwards(octant) ? octant : octant ^ 7u;
 }
 
-// Children that an interval [enter, leave] says are hit, pushed from back to front: slots below the
-// node's number, and where they are entered. Returns the new depth of the stack.
+// Where the 16 children of a node are entered and left.
+struct Intervals {
+  static constexpr std::size_t kVectors = kWide / HWY_MIN(HWY_MAX_BYTES / sizeof(float), kWide);
+  VF enter[kVectors], leave[kVectors];
+};
+
+// Children whose interval is not empty, pushed from back to front: slots below the node's number,
+// and where they are entered. Returns the new depth of the stack.
 HWY_INLINE std::size_t Push(const WideNode& node, std::uint32_t index, std::uint32_t octant,
-                            const float* enter, const float* leave, std::uint32_t* entries,
-                            float* enters, std::size_t depth) {
+                            const Intervals& t, std::uint32_t* entries, float* enters,
+                            std::size_t depth) {
   const DF d;
-  const DU du;
   const std::uint64_t order = node.order[OrderOf(octant)];
   const bool backwards = Backwards(octant);
 #if HWY_TARGET <= HWY_AVX3
+  const DU du;
   HWY_ALIGN static constexpr std::uint32_t kShifts[2][16] = {
       {0, 4, 8, 12, 16, 20, 24, 28, 0, 4, 8, 12, 16, 20, 24, 28},
       {28, 24, 20, 16, 12, 8, 4, 0, 28, 24, 20, 16, 12, 8, 4, 0}};
@@ -143,17 +149,19 @@ HWY_INLINE std::size_t Push(const WideNode& node, std::uint32_t index, std::uint
                                           hn::Set(du, backwards ? high : low));
   const auto slots = hn::And(hn::Shr(words, hn::Load(du, kShifts[backwards])), hn::Set(du, 15));
   const auto table = hn::IndicesFromVec(d, slots);
-  const VF first = hn::TableLookupLanes(hn::Load(d, enter), table);
-  const VF last = hn::TableLookupLanes(hn::Load(d, leave), table);
+  const VF first = hn::TableLookupLanes(t.enter[0], table);
+  const VF last = hn::TableLookupLanes(t.leave[0], table);
   const auto hit = hn::Le(first, last);
   hn::StoreU(hn::Compress(hn::Or(slots, hn::Set(du, index << 4)), hn::RebindMask(du, hit)), du,
              entries + depth);
   hn::StoreU(hn::Compress(first, hit), d, enters + depth);
   return depth + hn::CountTrue(d, hit);
 #else
+  HWY_ALIGN float enter[kWide];
   std::uint32_t hits = 0;
-  for (std::size_t i = 0; i < kWide; i += hn::Lanes(d)) {
-    hits |= BitsOf(d, hn::Le(hn::Load(d, enter + i), hn::Load(d, leave + i))) << i;
+  for (std::size_t k = 0, i = 0; k < Intervals::kVectors; ++k, i += hn::Lanes(d)) {
+    hn::Store(t.enter[k], d, enter + i);
+    hits |= BitsOf(d, hn::Le(t.enter[k], t.leave[k])) << i;
   }
   for (std::uint32_t place = 0; place < kWide; ++place) {
     const std::uint32_t shift = 4 * (backwards ? kWide - 1 - place : place);

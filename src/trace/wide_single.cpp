@@ -51,22 +51,20 @@ struct RayState {
 HWY_INLINE void Visit(const WideNode* nodes, std::uint32_t index, RayState& s) {
   const DF d;
   const WideNode& node = nodes[index];
-  HWY_ALIGN float enter[kWide];
-  HWY_ALIGN float leave[kWide];
   const float* const bound = &node.bound[0][0][0];
-  for (std::size_t i = 0; i < kWide; i += hn::Lanes(d)) {
+  Intervals t;
+  for (std::size_t k = 0, i = 0; k < Intervals::kVectors; ++k, i += hn::Lanes(d)) {
     const auto at = [&](const auto& rows, const auto& offsets, std::size_t a) HWY_ATTR {
       return hn::MulSub(hn::Load(d, bound + rows[a] + i), hn::Set(d, s.reciprocal[a]),
                         hn::Set(d, offsets[a]));
     };
-    const VF x = at(s.near_row, s.near_offset, 0), y = at(s.near_row, s.near_offset, 1),
-             z = at(s.near_row, s.near_offset, 2);
-    hn::Store(hn::Max(hn::Max(x, y), hn::Max(z, hn::Set(d, s.t_min))), d, enter + i);
-    const VF fx = at(s.far_row, s.far_offset, 0), fy = at(s.far_row, s.far_offset, 1),
-             fz = at(s.far_row, s.far_offset, 2);
-    hn::Store(hn::Min(hn::Min(fx, fy), hn::Min(fz, hn::Set(d, s.t_best))), d, leave + i);
+    t.enter[k] =
+        hn::Max(hn::Max(at(s.near_row, s.near_offset, 0), at(s.near_row, s.near_offset, 1)),
+                hn::Max(at(s.near_row, s.near_offset, 2), hn::Set(d, s.t_min)));
+    t.leave[k] = hn::Min(hn::Min(at(s.far_row, s.far_offset, 0), at(s.far_row, s.far_offset, 1)),
+                         hn::Min(at(s.far_row, s.far_offset, 2), hn::Set(d, s.t_best)));
   }
-  s.depth = Push(node, index, s.octant, enter, leave, s.entries, s.enters, s.depth);
+  s.depth = Push(node, index, s.octant, t, s.entries, s.enters, s.depth);
 }
 
 // Tests the triangles of a leaf. True where any hit is enough and there is one.
