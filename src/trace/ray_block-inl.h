@@ -90,7 +90,8 @@ HWY_INLINE void PrepareRays(const Ray* rays, std::size_t i, const WideScene& sce
   hn::Store(t_max, d, block.t + i);
 
   const VF largest = hn::Set(d, 3.402823466e38f);
-  auto valid = hn::Le(hn::Abs(sz), largest);
+  // An interval that is empty or not a number hits nothing, and must not get into bounds.
+  auto valid = hn::And(hn::Le(hn::Abs(sz), largest), hn::Le(t_min, t_max));
   VF reach = zero;
   const VF longest = hn::Abs(dz);
   for (std::size_t a = 0; a < 3; ++a) {

@@ -120,6 +120,7 @@ Status Tracer::update(const Tree& tree, const MeshView& mesh) {
                       " triangles, the mesh has " + std::to_string(mesh.triangle_count) +
                       ". Give the mesh the tree was built for.");
   }
+  if (impl_ == nullptr) *this = Tracer();  // this one was moved from
   const auto start = std::chrono::steady_clock::now();
   try {
     make_wide_layout(tree, mesh, impl_->layout);

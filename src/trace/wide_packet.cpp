@@ -72,12 +72,16 @@ HWY_INLINE bool AllMiss(const Ray* rays, const Box3& bounds) {
   const std::size_t lanes = hn::Lanes(d);
   const std::size_t step = std::max(lanes, kFloats);
   const std::size_t parts = step / lanes;
-  for (std::size_t q = 0; q < parts; ++q) least[q] = most[q] = hn::LoadU(d, in + q * lanes);
-  for (std::size_t i = step; i < kPacket * kFloats; i += step) {
+  for (std::size_t q = 0; q < parts; ++q) {
+    least[q] = hn::Set(d, HUGE_VALF);
+    most[q] = hn::Set(d, -HUGE_VALF);
+  }
+  for (std::size_t i = 0; i < kPacket * kFloats; i += step) {
     for (std::size_t q = 0; q < parts; ++q) {
       const VF x = hn::LoadU(d, in + i + q * lanes);
-      least[q] = hn::Min(least[q], x);
-      most[q] = hn::Max(most[q], x);
+      // In this order, what is not a number is passed over instead of replacing the bound.
+      least[q] = hn::Min(x, least[q]);
+      most[q] = hn::Max(x, most[q]);
     }
   }
   HWY_ALIGN float lo[16];

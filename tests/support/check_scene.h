@@ -24,6 +24,17 @@ inline void expect_equal_to_brute_force(const Tree& tree, const MeshView& mesh,
     ASSERT_EQ(tracer.closest(ray), expected);
     ASSERT_EQ(tracer.occluded(ray), expected.hit());
   }
+  // All at once: two at a time, and in packets.
+  for (const RayOrder order : {RayOrder::incoherent, RayOrder::coherent}) {
+    std::vector<Hit> hits(rays.size());
+    std::vector<std::uint8_t> flags(rays.size());
+    tracer.closest(rays, hits, order);
+    tracer.occluded(rays, flags, order);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      ASSERT_EQ(hits[i], tracer.closest(rays[i])) << "order " << static_cast<int>(order);
+      ASSERT_EQ(flags[i] != 0, hits[i].hit()) << "order " << static_cast<int>(order);
+    }
+  }
 }
 
 /// Builds with both axis schedules by the fast and the reference builder, compares their bytes,
