@@ -302,7 +302,7 @@ class AnimateCommand : public Command {
                     to_string(options_.build.settings.profile), options_.width, options_.height),
         "frame", "milliseconds",
         {line("build", &FrameRecord::build_ms), line("trace", &FrameRecord::trace_ms),
-         line("frame", &FrameRecord::frame_ms)});
+         line("frame: build + trace", &FrameRecord::frame_ms)});
   }
 
   MovingOptions options_;

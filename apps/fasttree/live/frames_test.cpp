@@ -60,7 +60,7 @@ TEST_F(FramesTest, AreTheMeshFilesOfAFolderInNaturalOrder) {
     write(name, kTriangle);
   }
   fs::create_directory(folder_ / "7.obj");
-  for (const std::string source : {folder_.string(), folder_.string() + "/"}) {
+  for (const std::string& source : {folder_.string(), folder_.string() + "/"}) {
     const auto frames = list_frames(source);
     ASSERT_TRUE(frames.ok()) << frames.status().message();
     EXPECT_TRUE(frames.value().folder);
