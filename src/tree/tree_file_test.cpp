@@ -212,7 +212,7 @@ TEST_F(TreeFile, SoundFilesOfOthersAreRefusedWithTheReason) {
                        "header of 192 bytes"));
   EXPECT_TRUE(contains(refused_with([](Bytes& b) { put<std::uint64_t>(b, 40, 1ull << 32); }),
                        "4294967296 triangles"));
-  EXPECT_TRUE(contains(refused_with([](Bytes& b) { b[72] = 3; }), "profile 3"));
+  EXPECT_TRUE(contains(refused_with([](Bytes& b) { b[72] = 4; }), "profile 4"));
   EXPECT_TRUE(contains(refused_with([](Bytes& b) { b[73] = 2; }), "axis schedule 2"));
   EXPECT_TRUE(contains(refused_with([](Bytes& b) { b[79] = 1; }), "reserved"));
   EXPECT_TRUE(contains(refused_with([](Bytes& b) { b[127] = 1; }), "reserved"));
