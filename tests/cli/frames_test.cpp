@@ -64,7 +64,7 @@ TEST(CliAnimate, CountsTheFramesOfAScene) {
     }
     EXPECT_FALSE(frame["stages_ms"].empty());
     EXPECT_EQ(frame["primary_rays"], 32 * 24);
-    EXPECT_EQ(frame["shadow_rays"], frame["hits"]);
+    EXPECT_LE(frame["shadow_rays"], frame["hits"]);
     EXPECT_LE(frame["lit"], frame["shadow_rays"]);
   }
   EXPECT_GT(json["frames"][0]["hits"], 0);
@@ -82,7 +82,8 @@ TEST(CliAnimate, HitsTheSameForAnyNumberOfThreadsAndProfile) {
                                           "32x32",   "--frames",       "3"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     std::vector<std::uint64_t> counts;
-    for (const auto& frame : run_json(arguments)["frames"]) {
+    const auto json = run_json(arguments);
+    for (const auto& frame : json["frames"]) {
       counts.push_back(frame["hits"]);
       counts.push_back(frame["lit"]);
     }
