@@ -2,10 +2,13 @@
 // Working memory that is written before it is read: growing it clears nothing.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <new>
 #include <utility>
 #include <vector>
+
+#include "support/large_memory.h"
 
 namespace fasttree::build {
 
@@ -15,6 +18,8 @@ struct UninitializedAllocator : std::allocator<T> {
   struct rebind {
     using other = UninitializedAllocator<U>;
   };
+  T* allocate(std::size_t n) { return static_cast<T*>(allocate_large(n * sizeof(T))); }
+  void deallocate(T* memory, std::size_t n) { release_large(memory, n * sizeof(T)); }
   template <typename U>
   void construct(U* at) {
     ::new (static_cast<void*>(at)) U;  // without parentheses: trivial types stay as they are

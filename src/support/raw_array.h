@@ -3,9 +3,10 @@
 #pragma once
 
 #include <cstddef>
-#include <new>
 #include <type_traits>
 #include <utility>
+
+#include "support/large_memory.h"
 
 namespace fasttree {
 
@@ -21,7 +22,7 @@ class RawArray {
     swap(other);
     return *this;
   }
-  ~RawArray() { release(data_); }
+  ~RawArray() { release(); }
 
   /// The content is void afterwards.
   void resize_and_forget(std::size_t size) {
@@ -29,7 +30,7 @@ class RawArray {
       // A little more, so that a scene that grows slowly does not allocate in every frame.
       const std::size_t capacity = size + size / 8;
       T* const fresh = static_cast<T*>(::operator new (capacity * sizeof(T), std::align_val_t{64}));
-      release(data_);
+      release();
       data_ = fresh;
       capacity_ = capacity;
     }
@@ -43,7 +44,9 @@ class RawArray {
   const T& operator[](std::size_t i) const { return data_[i]; }
 
  private:
-  static void release(T* data) { ::operator delete (data, std::align_val_t{64}); }
+  void release() {
+    if (data_ != nullptr) release_large(data_, capacity_ * sizeof(T));
+  }
   void swap(RawArray& other) {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
