@@ -146,14 +146,28 @@ std::uint64_t layer_bytes_per_reference() {
 void find_large(const MeshView& mesh, const Grid& grid, std::span<const CodeBox> boxes,
                 int box_shift, Layers& layers) {
   layers.large.clear();
+  // More than 4 x 4 x 4 cells are more than 4 on some axis: a difference of codes, axis by axis, in
+  // which other bits than the axis' last two are set.
+  static_assert(kRealtimeRule.large_cells == 64);
+  std::array<std::uint32_t, 3> axis, high;
+  for (std::size_t a = 0; a < 3; ++a) {
+    Cell cell{};
+    cell[a] = (1u << grid.bits()[a]) - 1;
+    axis[a] = grid.morton_code(cell);
+    cell[a] &= ~3u;
+    high[a] = grid.morton_code(cell);
+  }
   tbb::combinable<std::vector<std::uint32_t>> found;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, boxes.size(), 16384),
                     [&](const auto& range) {
                       for (std::size_t t = range.begin(); t < range.end(); ++t) {
-                        // A box whose codes differ in the last bits only has no more cells than
-                        // these make.
-                        constexpr std::uint32_t few = kRealtimeRule.large_cells;
-                        if ((boxes[t].lo ^ boxes[t].hi) >> box_shift < few) continue;
+                        const std::uint32_t lo = boxes[t].lo >> box_shift;
+                        const std::uint32_t hi = boxes[t].hi >> box_shift;
+                        std::uint32_t wide = 0;
+                        for (std::size_t a = 0; a < 3; ++a) {
+                          wide |= ((hi & axis[a]) - (lo & axis[a])) & high[a];
+                        }
+                        if (wide == 0) continue;
                         const auto id = static_cast<std::uint32_t>(t);
                         if (LargeTriangle::is_large(grid, mesh.triangle(id)))
                           found.local().push_back(id);
