@@ -29,7 +29,7 @@ class RawArray {
     if (size > capacity_) {
       // A little more, so that a scene that grows slowly does not allocate in every frame.
       const std::size_t capacity = size + size / 8;
-      T* const fresh = static_cast<T*>(::operator new (capacity * sizeof(T), std::align_val_t{64}));
+      T* const fresh = static_cast<T*>(allocate_large(capacity * sizeof(T)));
       release();
       data_ = fresh;
       capacity_ = capacity;
