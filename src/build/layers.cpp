@@ -61,23 +61,34 @@ void list_cells(const Buckets& buckets, std::size_t ids, Layers& layers) {
   }
 }
 
-// Takes the large triangles out of the cells they do not overlap.
+// Takes the large triangles out of the cells they do not overlap. Which of a cell's triangles are
+// large and which of those overlap it cannot be predicted: nothing branches on it.
 void drop_large(const Grid& grid, const Layers::Chunk& chunk, std::span<std::uint32_t> ids,
-                Layers& layers) {
+                std::vector<std::uint32_t>& places, Layers& layers) {
   for (std::size_t j = chunk.begin; j < chunk.end; ++j) {
-    Layers::TopCell& cell = layers.cells[j];
-    std::uint32_t kept = 0;
-    for (std::uint32_t i = 0; i < cell.count; ++i) {
-      const std::uint32_t id = ids[cell.first + i];
-      if ((layers.is_large[id / 64] >> id % 64 & 1) != 0) {
-        const auto large = std::lower_bound(
-            layers.large.begin(), layers.large.end(), id,
-            [](const LargeTriangle& t, std::uint32_t wanted) { return t.id() < wanted; });
-        if (!large->overlaps(grid, cell.code)) continue;
-      }
-      ids[cell.first + kept++] = id;
+    Layers::TopCell& top = layers.cells[j];
+    std::uint32_t* const of_cell = ids.data() + top.first;
+    if (places.size() < top.count) places.resize(top.count);
+    std::size_t large = 0;
+    for (std::uint32_t i = 0; i < top.count; ++i) {
+      places[large] = i;
+      large += layers.is_large[of_cell[i] / 64].bits >> of_cell[i] % 64 & 1;
     }
-    cell.count = kept;
+    if (large == 0) continue;
+    const Cell cell = grid.cell_of(top.code);
+    std::size_t dropped = 0;
+    for (std::size_t l = 0; l < large; ++l) {
+      const std::uint32_t id = of_cell[places[l]];
+      const LargeTriangle& triangle = layers.large[layers.is_large[id / 64].rank(id)];
+      places[dropped] = places[l];
+      dropped += triangle.overlaps(cell) ? 0 : 1;
+    }
+    // Everything behind one that is dropped moves down by those dropped before it.
+    for (std::size_t d = 0; d < dropped; ++d) {
+      const std::uint32_t end = d + 1 < dropped ? places[d + 1] : top.count;
+      std::copy(of_cell + places[d] + 1, of_cell + end, of_cell + places[d] - d);
+    }
+    top.count -= static_cast<std::uint32_t>(dropped);
   }
 }
 
@@ -160,17 +171,28 @@ void find_large(const MeshView& mesh, const Grid& grid, std::span<const CodeBox>
   tbb::combinable<std::vector<std::uint32_t>> found;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, boxes.size(), 16384),
                     [&](const auto& range) {
-                      for (std::size_t t = range.begin(); t < range.end(); ++t) {
+                      const auto wide = [&](std::size_t t) {
                         const std::uint32_t lo = boxes[t].lo >> box_shift;
                         const std::uint32_t hi = boxes[t].hi >> box_shift;
-                        std::uint32_t wide = 0;
+                        std::uint32_t bits = 0;
                         for (std::size_t a = 0; a < 3; ++a) {
-                          wide |= ((hi & axis[a]) - (lo & axis[a])) & high[a];
+                          bits |= ((hi & axis[a]) - (lo & axis[a])) & high[a];
                         }
-                        if (wide == 0) continue;
-                        const auto id = static_cast<std::uint32_t>(t);
-                        if (LargeTriangle::is_large(grid, mesh.triangle(id)))
-                          found.local().push_back(id);
+                        return bits;
+                      };
+                      // Mostly none of them is: a block is looked at as a whole first.
+                      constexpr std::size_t kBlock = 64;
+                      for (std::size_t t = range.begin(); t < range.end(); t += kBlock) {
+                        const std::size_t end = std::min(t + kBlock, range.end());
+                        std::uint32_t any = 0;
+                        for (std::size_t i = t; i < end; ++i) any |= wide(i);
+                        if (any == 0) continue;
+                        for (std::size_t i = t; i < end; ++i) {
+                          const auto id = static_cast<std::uint32_t>(i);
+                          if (wide(i) != 0 && LargeTriangle::is_large(grid, mesh.triangle(id))) {
+                            found.local().push_back(id);
+                          }
+                        }
                       }
                     });
   std::vector<std::uint32_t> ids;
@@ -178,16 +200,22 @@ void find_large(const MeshView& mesh, const Grid& grid, std::span<const CodeBox>
   std::sort(ids.begin(), ids.end());
   for (const std::uint32_t id : ids) layers.large.emplace_back(grid, id, mesh.triangle(id));
   if (ids.empty()) return;
-  layers.is_large.assign(boxes.size() / 64 + 1, 0);
-  for (const std::uint32_t id : ids) layers.is_large[id / 64] |= std::uint64_t{1} << id % 64;
+  layers.is_large.assign(boxes.size() / 64 + 1, {});
+  for (const std::uint32_t id : ids) layers.is_large[id / 64].bits |= std::uint64_t{1} << id % 64;
+  std::uint32_t before = 0;
+  for (Layers::LargeWord& word : layers.is_large) {
+    word.before = before;
+    before += static_cast<std::uint32_t>(std::popcount(word.bits));
+  }
 }
 
 void build_layers(const MeshView& mesh, const Grid& grid, const Buckets& buckets,
                   std::span<std::uint32_t> ids, Simd simd, Layers& layers) {
   list_cells(buckets, ids.size(), layers);
   if (!layers.large.empty()) {
-    tbb::parallel_for(std::size_t{0}, layers.chunk_count,
-                      [&](std::size_t c) { drop_large(grid, layers.chunks[c], ids, layers); });
+    tbb::parallel_for(std::size_t{0}, layers.chunk_count, [&](std::size_t c) {
+      drop_large(grid, layers.chunks[c], ids, layers.places.local(), layers);
+    });
   }
   tbb::parallel_for(std::size_t{0}, layers.chunk_count, [&](std::size_t c) {
     Layers::Chunk& chunk = layers.chunks[c];

@@ -5,6 +5,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -38,11 +39,23 @@ struct Layers {
     std::size_t end = 0;
     LayerOutput output;
   };
-  std::vector<LargeTriangle> large;     ///< by id
-  std::vector<std::uint64_t> is_large;  ///< a bit a triangle, where there are any
+  /// Which of 64 triangles are large, and how many of those before them are.
+  struct LargeWord {
+    std::uint64_t bits = 0;
+    std::uint32_t before = 0;
+
+    /// Place of a large triangle in `large`.
+    std::size_t rank(std::uint32_t id) const {
+      const std::uint64_t lower = bits & ((std::uint64_t{1} << id % 64) - 1);
+      return before + static_cast<std::size_t>(std::popcount(lower));
+    }
+  };
+  std::vector<LargeTriangle> large;  ///< by id
+  std::vector<LargeWord> is_large;   ///< of all triangles, where any is large
   std::vector<TopCell> cells;
   std::vector<Chunk> chunks;
   std::size_t chunk_count = 0;
+  tbb::enumerable_thread_specific<std::vector<std::uint32_t>> places;  ///< in a cell's ids
   tbb::enumerable_thread_specific<LayerBuilder> builders;
 };
 

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "grid/grid.h"
 
@@ -57,26 +58,13 @@ class CellOverlap {
   }
 
   /// The cell at an offset from the origin.
-  bool at(float x, float y, float z) const {
-    if (!tested_) return true;
-    const std::array<float, 3> offset{x, y, z};
-    for (std::size_t w = 0; w < 3; ++w) {
-      const float u = offset[(w + 1) % 3];
-      const float v = offset[(w + 2) % 3];
-      for (const Edge& edge : edges_[w]) {
-        if ((edge.u * u + edge.v * v) + edge.base < 0.0f) return false;
-      }
-    }
-    const float n = (normal_[0] * x + normal_[1] * y) + normal_[2] * z;
-    return !(n + above_ < 0.0f) && !(n + below_ > 0.0f);
-  }
+  bool at(float x, float y, float z) const;
 
  private:
-  // An edge seen along an axis: the largest value in a cell of a function that is positive inside
-  // the triangle, and zero on the edge.
-  struct Edge {
-    float u, v, base;
-  };
+  // Linear functions of a cell's offset that are negative only where it is outside: the largest
+  // value in a cell of a function that is positive inside the triangle and zero on an edge, for the
+  // nine edges seen along the axes; and the two sides of the triangle's plane. The last is empty.
+  static constexpr std::size_t kLines = 12;
 
   static float positive(float v) { return v > 0.0f ? v : 0.0f; }
   static float negative(float v) { return v < 0.0f ? v : 0.0f; }
@@ -93,7 +81,11 @@ class CellOverlap {
     if (std::signbit(side)) nu = -nu, nv = -nv;
     const float reach =
         (positive(nu) + positive(nv)) + ((std::fabs(nu) + std::fabs(nv)) * slack + kOverlapLeast);
-    edges_[w][e] = {nu, nv, reach - (nu * from[u] + nv * from[v])};
+    const std::size_t line = 3 * w + e;
+    const std::array<std::array<float, kLines>*, 3> axis{&x_, &y_, &z_};
+    (*axis[u])[line] = nu;
+    (*axis[v])[line] = nv;
+    base_[line] = reach - (nu * from[u] + nv * from[v]);
   }
 
   void set_plane(const std::array<std::array<float, 3>, 3>& p, float slack) {
@@ -102,24 +94,27 @@ class CellOverlap {
       d[a] = p[1][a] - p[0][a];
       e[a] = p[2][a] - p[0][a];
     }
-    std::array<float, 3> size;
+    std::array<float, 3> size, normal;
     for (std::size_t w = 0; w < 3; ++w) {
       const float a = d[(w + 1) % 3] * e[(w + 2) % 3];
       const float b = d[(w + 2) % 3] * e[(w + 1) % 3];
-      normal_[w] = a - b;
+      normal[w] = a - b;
       size[w] = std::fabs(a) + std::fabs(b);
     }
     const float room = ((size[0] + size[1]) + size[2]) * slack + kOverlapLeast;
-    const float at = (normal_[0] * p[0][0] + normal_[1] * p[0][1]) + normal_[2] * p[0][2];
-    above_ = (((positive(normal_[0]) + positive(normal_[1])) + positive(normal_[2])) + room) - at;
-    below_ = (((negative(normal_[0]) + negative(normal_[1])) + negative(normal_[2])) - room) - at;
+    const float at = (normal[0] * p[0][0] + normal[1] * p[0][1]) + normal[2] * p[0][2];
+    constexpr std::size_t above = 9, below = 10;
+    x_[above] = normal[0], y_[above] = normal[1], z_[above] = normal[2];
+    base_[above] =
+        (((positive(normal[0]) + positive(normal[1])) + positive(normal[2])) + room) - at;
+    // The other side with all signs changed, which changes no rounding.
+    x_[below] = -normal[0], y_[below] = -normal[1], z_[below] = -normal[2];
+    base_[below] =
+        -((((negative(normal[0]) + negative(normal[1])) + negative(normal[2])) - room) - at);
   }
 
   bool tested_ = false;
-  std::array<std::array<Edge, 3>, 3> edges_;
-  std::array<float, 3> normal_;
-  float above_ = 0;
-  float below_ = 0;
+  alignas(16) std::array<float, kLines> x_{}, y_{}, z_{}, base_{};
 };
 
 }  // namespace fasttree

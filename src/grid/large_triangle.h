@@ -22,9 +22,8 @@ class LargeTriangle {
 
   std::uint32_t id() const { return id_; }
 
-  /// Whether it overlaps the cell with a code, one of its box.
-  bool overlaps(const Grid& grid, std::uint32_t code) const {
-    const Cell cell = grid.cell_of(code);
+  /// Whether it overlaps a cell, one of its box.
+  bool overlaps(const Cell& cell) const {
     return overlap_.at(static_cast<float>(cell[0] - origin_[0]),
                        static_cast<float>(cell[1] - origin_[1]),
                        static_cast<float>(cell[2] - origin_[2]));

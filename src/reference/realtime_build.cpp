@@ -41,7 +41,7 @@ Layer top_layer(const MeshView& mesh, const Grid& grid, const LeafTable& leaves,
     for (std::uint32_t i = 0; i < leaves.count[j]; ++i) {
       const std::uint32_t id = sorted.ids[leaves.first[j] + i];
       const auto found = large.find(id);
-      if (found == large.end() || found->second.overlaps(grid, leaves.code[j])) {
+      if (found == large.end() || found->second.overlaps(grid.cell_of(leaves.code[j]))) {
         list.ids.push_back(id);
       }
     }
