@@ -8,6 +8,8 @@
 #define FASTTREE_TRACE_RAY_BLOCK_INL_H_
 #endif
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -135,10 +137,18 @@ HWY_INLINE void PrepareRays(const Ray* rays, std::size_t i, const WideScene& sce
   block.in_bounds |= std::uint64_t{BitsOf(d, hn::Le(enter, leave))} << i;
 }
 
-/// Makes at most 64 rays ready, and gives those that hit nothing their result. Returns the rays
-/// that have to be traced; appends those that are not tame to batch.wild.
+/// Asks for the rays of a block to come: a batch is larger than the caches, and processors do not
+/// fetch ahead over the end of a page.
+HWY_INLINE void PrefetchRays(const WideBatch& batch, std::size_t begin) {
+  if (begin + kPacket > batch.rays.size()) return;
+  const char* const rays = reinterpret_cast<const char*>(&batch.rays[begin]);
+  for (std::size_t at = 0; at < kPacket * sizeof(Ray); at += 64) hwy::Prefetch(rays + at);
+}
+
+/// Makes at most 64 rays ready. Returns those that have to be traced: the others hit nothing, or
+/// are not tame, which is noted in batch.wild.
 HWY_INLINE std::uint64_t PrepareBlock(const WideScene& scene, const WideBatch& batch,
-                                      std::size_t begin, bool any, RayBlock& block) {
+                                      std::size_t begin, RayBlock& block) {
   const DF d;
   const std::size_t lanes = hn::Lanes(d);
   const std::size_t count = std::min(kPacket, batch.rays.size() - begin);
@@ -161,13 +171,7 @@ HWY_INLINE std::uint64_t PrepareBlock(const WideScene& scene, const WideBatch& b
     batch.wild->push_back(
         static_cast<std::uint32_t>(begin + static_cast<std::size_t>(std::countr_zero(wild))));
   }
-  const std::uint64_t wanted = all & block.valid & block.tame & block.in_bounds;
-  if (any) {
-    std::fill_n(batch.flags.data() + begin, count, std::uint8_t{0});
-  } else {
-    std::fill_n(batch.hits.data() + begin, count, Hit{});
-  }
-  return wanted;
+  return all & block.valid & block.tame & block.in_bounds;
 }
 
 #endif  // HWY_SCALAR

@@ -125,13 +125,16 @@ HWY_INLINE bool AllMiss(const Ray* rays, const Box3& bounds) {
   return enter > leave + 0x1p-20f * std::fabs(leave);
 }
 
-// Results of a packet that hits nothing, past the caches: it is most of the memory's work in a
-// picture with much background.
-HWY_INLINE void StreamMisses(Hit* hits) {
+// Results of a packet, past the caches: a batch has more of them than the caches hold.
+HWY_INLINE bool CanStream(const Hit* hits) {
   static_assert(sizeof(Hit) == 16);
+  return reinterpret_cast<std::uintptr_t>(hits) % 16 == 0;
+}
+
+HWY_INLINE void WriteMisses(Hit* hits) {
   const hn::FixedTag<float, 4> d;
   const Hit miss;
-  if (reinterpret_cast<std::uintptr_t>(hits) % 16 != 0) {
+  if (!CanStream(hits)) {
     std::fill_n(hits, kPacket, miss);
     return;
   }
@@ -139,24 +142,51 @@ HWY_INLINE void StreamMisses(Hit* hits) {
   for (std::size_t i = 0; i < kPacket; ++i) hn::Stream(value, d, &hits[i].t);
 }
 
+// Those of `traced` that have found something; the others have missed.
+HWY_INLINE void WriteHits(const Packet& p, std::uint64_t traced, std::size_t count, Hit* hits) {
+  const DF d;
+  const DU du;
+  const std::uint32_t all = static_cast<std::uint32_t>((std::uint64_t{1} << hn::Lanes(d)) - 1);
+  HWY_ALIGN Hit block[16];
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const auto id = hn::Load(du, p.id + i);
+    const auto hit = hn::And(hn::RebindMask(d, hn::Ne(id, hn::Set(du, kNoTriangle))),
+                             MaskOf(d, static_cast<std::uint32_t>(traced >> i) & all));
+    const auto no_triangle = hn::BitCast(d, hn::Set(du, kNoTriangle));
+    hn::StoreInterleaved4(hn::IfThenElse(hit, hn::Load(d, p.rays.t + i), hn::Set(d, HUGE_VALF)),
+                          hn::IfThenElse(hit, hn::BitCast(d, id), no_triangle),
+                          hn::IfThenElseZero(hit, hn::Load(d, p.u + i)),
+                          hn::IfThenElseZero(hit, hn::Load(d, p.v + i)), d, &block[0].t);
+    const std::size_t here = std::min(hn::Lanes(d), count - i);
+    if (here == hn::Lanes(d) && CanStream(hits)) {
+      const hn::FixedTag<float, 4> d4;
+      for (std::size_t j = 0; j < here; ++j) {
+        hn::Stream(hn::Load(d4, &block[j].t), d4, &hits[i + j].t);
+      }
+    } else {
+      std::copy(block, block + here, hits + i);
+    }
+  }
+}
+
+// Rays are asked for this many before their turn: packets that miss the scene go by quickly.
+constexpr std::size_t kAhead = 2 * kPacket;
+
 template <bool kAny>
 void TracePackets(const WideScene& scene, const WideBatch& batch) {
   const DU du;
   Packet p;
   for (std::size_t begin = 0; begin < batch.rays.size(); begin += kPacket) {
-    if (begin + kPacket <= batch.rays.size() && AllMiss(&batch.rays[begin], scene.bounds)) {
-      if (kAny) {
-        std::fill_n(batch.flags.data() + begin, kPacket, std::uint8_t{0});
-      } else {
-        StreamMisses(batch.hits.data() + begin);
-      }
+    PrefetchRays(batch, begin + kAhead);
+    const std::size_t count = std::min(kPacket, batch.rays.size() - begin);
+    if (kAny) std::fill_n(batch.flags.data() + begin, count, std::uint8_t{0});
+    if (count == kPacket && AllMiss(&batch.rays[begin], scene.bounds)) {
+      if (!kAny) WriteMisses(batch.hits.data() + begin);
       continue;
     }
-    std::uint64_t left = PrepareBlock(scene, batch, begin, kAny, p.rays);
-    if (!kAny && left != 0) {
-      std::fill_n(p.id, kPacket, kNoTriangle);
-    }
-    while (left != 0) {
+    const std::uint64_t traced = PrepareBlock(scene, batch, begin, p.rays);
+    if (!kAny) std::fill_n(p.id, kPacket, kNoTriangle);
+    for (std::uint64_t left = traced; left != 0;) {
       const std::uint32_t way = p.rays.way[std::countr_zero(left)];
       std::uint64_t members = 0;
       for (std::size_t i = 0; i < kPacket; i += hn::Lanes(du)) {
@@ -175,15 +205,9 @@ void TracePackets(const WideScene& scene, const WideBatch& batch) {
         for (std::uint64_t hit = members & ~p.alive; hit != 0; hit &= hit - 1) {
           batch.flags[begin + static_cast<std::size_t>(std::countr_zero(hit))] = 1;
         }
-        continue;
-      }
-      for (; members != 0; members &= members - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(members));
-        if (p.id[i] != kNoTriangle) {
-          batch.hits[begin + i] = {p.rays.t[i], p.id[i], p.u[i], p.v[i]};
-        }
       }
     }
+    if (!kAny) WriteHits(p, traced, count, batch.hits.data() + begin);
   }
 }
 

@@ -149,8 +149,16 @@ void TraceBatch(const WideScene& scene, const WideBatch& batch) {
     while (waiting == 0) {
       if (next_block >= batch.rays.size()) return false;
       begin = next_block;
-      waiting = PrepareBlock(scene, batch, begin, kAny, block);
+      waiting = PrepareBlock(scene, batch, begin, block);
       next_block += kPacket;
+      // Those that are traced write their results over it.
+      const std::size_t count = std::min(kPacket, batch.rays.size() - begin);
+      if (kAny) {
+        std::fill_n(batch.flags.data() + begin, count, std::uint8_t{0});
+      } else {
+        std::fill_n(batch.hits.data() + begin, count, Hit{});
+      }
+      PrefetchRays(batch, next_block);
     }
     const auto i = static_cast<std::size_t>(std::countr_zero(waiting));
     waiting &= waiting - 1;
