@@ -249,16 +249,28 @@ typedef struct ft_tracer ft_tracer;
 ft_status ft_tracer_create(const ft_tree* tree, const ft_mesh* mesh, ft_tracer** tracer);
 void ft_tracer_free(ft_tracer* tracer);
 
+/* The same in this tracer's memory, for scenes that are rebuilt every frame: take two trees in
+ * turn, since the one that a tracer uses cannot be built into. threads as in ft_build_settings.
+ * After a failure the tracer is as it was, or, where memory ran out, that of an empty mesh. */
+ft_status ft_tracer_update(ft_tracer* tracer, const ft_tree* tree, const ft_mesh* mesh,
+                           uint32_t threads);
+
 ft_status ft_tracer_closest(const ft_tracer* tracer, const ft_ray* ray, ft_hit* hit);
 
 /* *occluded is 1 where anything is hit, else 0. */
 ft_status ft_tracer_occluded(const ft_tracer* tracer, const ft_ray* ray, uint8_t* occluded);
 
+/* What is known of the rays of a batch: it changes the time they take, never their results. */
+typedef enum ft_ray_order {
+  FT_RAYS_INCOHERENT = 0, /* anything: each ray goes its own way */
+  FT_RAYS_COHERENT = 1    /* neighbours start and go nearly alike: 8 x 8 pixels, then the next */
+} ft_ray_order;
+
 /* `count` rays into `count` hits or flags. threads as in ft_build_settings. */
 ft_status ft_tracer_closest_many(const ft_tracer* tracer, const ft_ray* rays, size_t count,
-                                 ft_hit* hits, uint32_t threads);
+                                 ft_ray_order order, ft_hit* hits, uint32_t threads);
 ft_status ft_tracer_occluded_many(const ft_tracer* tracer, const ft_ray* rays, size_t count,
-                                  uint8_t* occluded, uint32_t threads);
+                                  ft_ray_order order, uint8_t* occluded, uint32_t threads);
 
 #ifdef __cplusplus
 }

@@ -285,7 +285,7 @@ static void test_trace(ft_builder* builder, const ft_mesh* mesh) {
   ft_tree* tree = NULL;
   ft_tracer* tracer = NULL;
   ft_mesh fewer = *mesh;
-  uint32_t threads;
+  uint32_t pass;
   int i, hit_count = 0;
 
   EXPECT(ft_builder_build(builder, mesh, NULL, &tree) == FT_OK);
@@ -312,11 +312,13 @@ static void test_trace(ft_builder* builder, const ft_mesh* mesh) {
     r->t_min = 0;
     r->t_max = 10;
   }
-  for (threads = 0; threads <= 2; ++threads) {
+  for (pass = 0; pass < 6; ++pass) {
+    const uint32_t threads = pass / 2;
+    const ft_ray_order order = pass % 2 ? FT_RAYS_COHERENT : FT_RAYS_INCOHERENT;
     memset(hits, 0, sizeof hits);
     memset(flags, 7, sizeof flags);
-    EXPECT(ft_tracer_closest_many(tracer, rays, kRays, hits, threads) == FT_OK);
-    EXPECT(ft_tracer_occluded_many(tracer, rays, kRays, flags, threads) == FT_OK);
+    EXPECT(ft_tracer_closest_many(tracer, rays, kRays, order, hits, threads) == FT_OK);
+    EXPECT(ft_tracer_occluded_many(tracer, rays, kRays, order, flags, threads) == FT_OK);
     hit_count = 0;
     for (i = 0; i < kRays; ++i) {
       const float x = rays[i].origin[0], y = rays[i].origin[1];
@@ -337,19 +339,40 @@ static void test_trace(ft_builder* builder, const ft_mesh* mesh) {
   }
   EXPECT(hit_count > kRays / 2 && hit_count < kRays);
 
-  EXPECT(ft_tracer_closest_many(tracer, NULL, 0, NULL, 0) == FT_OK);
-  EXPECT(ft_tracer_occluded_many(tracer, NULL, 0, NULL, 0) == FT_OK);
+  EXPECT(ft_tracer_closest_many(tracer, NULL, 0, FT_RAYS_COHERENT, NULL, 0) == FT_OK);
+  EXPECT(ft_tracer_occluded_many(tracer, NULL, 0, FT_RAYS_COHERENT, NULL, 0) == FT_OK);
   EXPECT_NULL(ft_tracer_closest(NULL, rays, hits));
   EXPECT_NULL(ft_tracer_closest(tracer, NULL, hits));
   EXPECT_NULL(ft_tracer_closest(tracer, rays, NULL));
   EXPECT_NULL(ft_tracer_occluded(NULL, rays, flags));
   EXPECT_NULL(ft_tracer_occluded(tracer, NULL, flags));
   EXPECT_NULL(ft_tracer_occluded(tracer, rays, NULL));
-  EXPECT_NULL(ft_tracer_closest_many(NULL, rays, 1, hits, 0));
-  EXPECT_NULL(ft_tracer_closest_many(tracer, NULL, 1, hits, 0));
-  EXPECT_NULL(ft_tracer_closest_many(tracer, rays, 1, NULL, 0));
-  EXPECT_NULL(ft_tracer_occluded_many(tracer, rays, 1, NULL, 0));
-  EXPECT_FAILS(ft_tracer_closest_many(tracer, rays, 1, hits, 5000), FT_INVALID_ARGUMENT, "threads");
+  EXPECT_NULL(ft_tracer_closest_many(NULL, rays, 1, FT_RAYS_COHERENT, hits, 0));
+  EXPECT_NULL(ft_tracer_closest_many(tracer, NULL, 1, FT_RAYS_COHERENT, hits, 0));
+  EXPECT_NULL(ft_tracer_closest_many(tracer, rays, 1, FT_RAYS_COHERENT, NULL, 0));
+  EXPECT_NULL(ft_tracer_occluded_many(tracer, rays, 1, FT_RAYS_COHERENT, NULL, 0));
+  EXPECT_FAILS(ft_tracer_closest_many(tracer, rays, 1, FT_RAYS_INCOHERENT, hits, 5000),
+               FT_INVALID_ARGUMENT, "threads");
+  EXPECT_FAILS(ft_tracer_closest_many(tracer, rays, 1, (ft_ray_order)2, hits, 0),
+               FT_INVALID_ARGUMENT, "order");
+
+  /* another frame: a tree beside the one in use, then the tracer goes over to it */
+  EXPECT(ft_builder_build(builder, mesh, NULL, &tree) == FT_OK);
+  EXPECT_NULL(ft_tracer_update(NULL, tree, mesh, 0));
+  EXPECT_NULL(ft_tracer_update(tracer, NULL, mesh, 0));
+  EXPECT_NULL(ft_tracer_update(tracer, tree, NULL, 0));
+  fewer = *mesh;
+  --fewer.triangle_count;
+  EXPECT_FAILS(ft_tracer_update(tracer, tree, &fewer, 0), FT_INVALID_ARGUMENT, "triangles");
+  EXPECT(ft_tracer_closest(tracer, rays, hits) == FT_OK); /* as it was */
+  EXPECT(ft_tracer_update(tracer, tree, mesh, 1) == FT_OK);
+  EXPECT_FAILS(ft_builder_build_into(builder, mesh, NULL, tree), FT_INVALID_ARGUMENT, "tracer");
+  ft_tree_free(tree);
+  for (i = 0; i < kRays; ++i) {
+    ft_hit one = {0, 0, 0, 0};
+    EXPECT(ft_tracer_closest(tracer, rays + i, &one) == FT_OK);
+    EXPECT(i == 0 || (one.t == hits[i].t && one.triangle == hits[i].triangle));
+  }
   ft_tracer_free(tracer);
 }
 
