@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # The benchmark: real scenes, profiles realtime and paper, one and two threads, each against Embree.
 # Figures and charts go to out/benchmark/; a table of ratios ends it (more than 1: the kd-tree is
-# faster). Takes minutes; nothing else should run on the machine.
+# faster), after an uneven scene and the growth of time and memory from 10,000 to 10,000,000
+# triangles. Takes minutes; nothing else should run on the machine.
 #
 #   scripts/benchmark.sh [FOLDER] [OPTION...]
 #
@@ -13,7 +14,7 @@
 set -euo pipefail
 case ${1:-} in
   -h | --help)
-    sed -n '3,13s/^# \{0,1\}//p' "$0"
+    sed -n '3,14s/^# \{0,1\}//p' "$0"
     exit 0
     ;;
 esac
@@ -68,6 +69,22 @@ for entry in "${views[@]}"; do
   done
 done
 [ ${#results[@]} -gt 0 ] || fail "none of the scenes is in $scenes"
+
+say "An uneven scene: a dense object in a huge room, profile realtime, 2 threads"
+"$program" compare scene:stadium --profile realtime --threads 2 --json "$out/stadium-realtime-2.json" \
+  --svg "$out/stadium-realtime-2.svg" "$@"
+results+=("$out/stadium-realtime-2.json")
+
+say "Growth: scene:knot, profile realtime, builds alone"
+for size in 10k 100k 1M 10M; do
+  for threads in 1 2; do
+    result=$out/knot-$size-$threads.json
+    "$program" build "scene:knot:$size" --threads "$threads" --repeat 7 --quiet --json "$result"
+    jq -r '[.triangles, .threads, .build_ms, .build_ms * 1e6 / .triangles,
+            (.peak_resident_bytes // 0) / .triangles] | @tsv' "$result"
+  done
+done | awk -F'\t' 'BEGIN { print "   triangles  threads  build ms  ns a triangle  peak bytes a triangle" }
+  { printf "%12d %8d %9.2f %14.1f %22.0f\n", $1, $2, $3, $4, $5 }' | tee "$out/growth.txt"
 
 say "How many times as fast as Embree (rays: build quality medium)"
 jq -rs '

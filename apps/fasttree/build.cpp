@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "options.h"
 #include "output.h"
 #include "progress.h"
+#include "resident.h"
 
 namespace fasttree::app {
 namespace {
@@ -63,10 +65,12 @@ class BuildCommand : public Command {
     std::vector<double> builds;
     std::vector<StageTime> stages;  ///< medians
     std::uint64_t planned_bytes = 0;
+    std::optional<std::uint64_t> resident_bytes;  ///< most that the builds added
   };
 
   Times build_repeatedly(Context& context, const MeshView& mesh, Tree& tree) const {
     Times times;
+    const ResidentPeak resident;
     Builder builder;
     std::vector<std::vector<double>> stage_times;
     for (std::uint32_t i = 0; i < repeat_; ++i) {
@@ -83,6 +87,7 @@ class BuildCommand : public Command {
       }
       stop_if_cancelled();
     }
+    times.resident_bytes = resident.grown();
     for (std::size_t s = 0; s < times.stages.size(); ++s) {
       times.stages[s].ms = median(stage_times[s]);
     }
@@ -100,13 +105,21 @@ class BuildCommand : public Command {
     } else {
       output.line("profile              {}", to_string(info.profile));
     }
-    output.line("build                {:.2f} ms{}", median(times.builds),
-                repeat_ > 1 ? fmt::format(" (median of {})", repeat_) : "");
+    const double build_ms = median(times.builds);
+    output.line("build                {:.2f} ms{}{}", build_ms,
+                repeat_ > 1 ? fmt::format(" (median of {})", repeat_) : "",
+                info.triangle_count > 0
+                    ? fmt::format(", {:.1f} ns a triangle", build_ms * 1e6 / info.triangle_count)
+                    : "");
     for (const StageTime& stage : times.stages) {
       output.line("  {:<18} {:.2f} ms", stage.stage, stage.ms);
     }
     print_quality(output, quality);
-    output.line("memory               {} (the tree itself {})", bytes_text(times.planned_bytes),
+    output.line("memory               {} planned{} (the tree itself {})",
+                bytes_text(times.planned_bytes),
+                times.resident_bytes
+                    ? fmt::format(", {} used at the peak", bytes_text(*times.resident_bytes))
+                    : "",
                 bytes_text(tree.nodes().size_bytes() + tree.ids().size_bytes()));
     output.line("hash                 {}", hash_string(tree.hash()));
     if (!out_.empty()) output.line("saved                {}", out_);
@@ -146,6 +159,8 @@ class BuildCommand : public Command {
     }
     json["stages"] = stages;
     json["planned_bytes"] = times.planned_bytes;
+    json["peak_resident_bytes"] =
+        times.resident_bytes ? ordered_json(*times.resident_bytes) : ordered_json(nullptr);
     json["tree_bytes"] = tree.nodes().size_bytes() + tree.ids().size_bytes();
     json["tree_hash"] = hash_string(tree.hash());
     json["quality"] = json_of(quality);
