@@ -102,6 +102,7 @@ Contender::Contender(std::string name, std::vector<std::string> ways) {
 TreeContender::TreeContender(std::string name, BuildSettings settings)
     : Contender(std::move(name), {"single", "packet64"}), settings_(std::move(settings)) {
   record.tree.emplace();
+  record.tree->profile = settings_.profile;
 }
 
 double TreeContender::build(const MeshView& mesh) {

@@ -25,6 +25,7 @@ struct Traced {
 
 /// What is measured of a kd-tree only.
 struct TreeRecord {
+  Profile profile = Profile::realtime;
   std::vector<double> layout_ms;  ///< a counted round: what of the build is the tracer's
   int depth = 0;
   std::uint64_t hash = 0;

