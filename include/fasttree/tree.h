@@ -85,15 +85,17 @@ struct TreeInfo {
 };
 
 /// A kd-tree: its info, its nodes and the ids its leaves point into. A tree always has a root: an
-/// empty mesh gives one leaf without triangles. Owns its memory, or keeps a mapped file open.
-/// Copies are deep for owned trees and share the mapping for mapped ones.
+/// empty mesh gives one leaf without triangles. Owns its arrays, or shares those that something
+/// else owns (a mapped file, what a builder has built): copies are deep or share it likewise, and
+/// neither can be changed through them.
 class Tree {
  public:
   /// The tree of an empty mesh.
   Tree();
   /// Takes over finished arrays. Nothing is checked: see verify() for that.
   Tree(const TreeInfo& info, std::vector<Node> nodes, std::vector<std::uint32_t> ids);
-  /// Views arrays that `owner` keeps alive (a mapped file).
+  /// Views arrays that `owner` keeps alive (a mapped file, a builder's memory) and that do not
+  /// change while it does.
   Tree(const TreeInfo& info, std::span<const Node> nodes, std::span<const std::uint32_t> ids,
        std::shared_ptr<const void> owner);
 
@@ -106,9 +108,9 @@ class Tree {
   /// have equal hashes, whichever builder, thread count or machine made them.
   std::uint64_t hash() const;
 
-  /// Gives the arrays back, so that a builder can reuse their memory; leaves the tree empty.
-  /// A mapped tree gives back empty arrays.
-  void release(std::vector<Node>& nodes, std::vector<std::uint32_t>& ids);
+  /// Leaves the tree empty and hands over what kept its arrays; null for arrays of its own. A
+  /// builder reuses the memory of what it has built where nobody else holds it.
+  std::shared_ptr<const void> release();
 
  private:
   TreeInfo info_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
+#include <memory>
 #include <new>
 #include <utility>
 
@@ -15,31 +16,54 @@
 
 namespace fasttree {
 
+namespace {
+
+// Marks what keeps the arrays of trees that were built here, so that it is known again.
+struct DeleteArrays {
+  void operator()(build::TreeArrays* arrays) const { delete arrays; }
+};
+
+}  // namespace
+
 struct Builder::Impl {
   build::Workspace workspace;
-  build::TreeArrays arrays;
+  std::shared_ptr<build::TreeArrays> spare;  ///< memory of a build that failed
   BuildStats stats;
 
-  // Each takes what is left in `tree` as memory and fills it with the new one.
-  Status build_fast(const MeshView& mesh, const BuildSettings& settings, Tree& tree) {
-    tree.release(arrays.nodes, arrays.ids);
-    Status status = build::morton_build(mesh, settings, workspace, arrays, stats);
-    if (!status.ok()) return status;
-    tree = Tree(arrays.info, std::move(arrays.nodes), std::move(arrays.ids));
-    return {};
+  // The arrays of `tree` where no other tree has them too; else those of a build that failed, or
+  // fresh ones.
+  std::shared_ptr<build::TreeArrays> take_arrays(Tree& tree) {
+    std::shared_ptr<const void> owner = tree.release();
+    if (owner.use_count() == 1 && std::get_deleter<DeleteArrays>(owner) != nullptr) {
+      return std::const_pointer_cast<build::TreeArrays>(
+          std::static_pointer_cast<const build::TreeArrays>(owner));
+    }
+    if (spare) return std::move(spare);
+    return {new build::TreeArrays, DeleteArrays()};
+  }
+
+  using FastBuild = Status (*)(const MeshView&, const BuildSettings&, build::Workspace&,
+                               build::TreeArrays&, BuildStats&);
+  Status build_fast(FastBuild fast, const MeshView& mesh, const BuildSettings& settings,
+                    Tree& tree) {
+    std::shared_ptr<build::TreeArrays> arrays = take_arrays(tree);
+    Status status = fast(mesh, settings, workspace, *arrays, stats);
+    if (status.ok()) {
+      const build::TreeArrays& made = *arrays;
+      tree = Tree(made.info, made.nodes, made.ids, std::move(arrays));
+    } else {
+      spare = std::move(arrays);
+    }
+    return status;
   }
 
   Status build_realtime(const MeshView& mesh, const BuildSettings& settings, Tree& tree) {
-    if (settings.implementation == Implementation::reference) {
-      Result<Tree> built = reference::realtime_build(mesh, settings, stats);
-      if (built.ok()) tree = std::move(built).value();
-      return built.status();
+    if (settings.implementation == Implementation::fast) {
+      return build_fast(build::realtime_build, mesh, settings, tree);
     }
-    tree.release(arrays.nodes, arrays.ids);
-    Status status = build::realtime_build(mesh, settings, workspace, arrays, stats);
-    if (!status.ok()) return status;
-    tree = Tree(arrays.info, std::move(arrays.nodes), std::move(arrays.ids));
-    return {};
+    Result<Tree> built = reference::realtime_build(mesh, settings, stats);
+    if (built.ok()) tree = std::move(built).value();
+    return built.status();
   }
 
   Status build_reference(const MeshView& mesh, const BuildSettings& settings, Tree& tree) {
@@ -82,7 +106,7 @@ struct Builder::Impl {
       case Profile::paper:
         return settings.implementation == Implementation::reference
                    ? build_reference(mesh, settings, tree)
-                   : build_fast(mesh, settings, tree);
+                   : build_fast(build::morton_build, mesh, settings, tree);
       case Profile::realtime:
         return build_realtime(mesh, settings, tree);
       case Profile::sah_exact:
@@ -128,7 +152,7 @@ const BuildStats& Builder::stats() const {
 
 void Builder::shrink() {
   impl_->workspace = {};
-  impl_->arrays = {};
+  impl_->spare = nullptr;
 }
 
 }  // namespace fasttree

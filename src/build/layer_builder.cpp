@@ -22,7 +22,7 @@ double half_area(const Box3& box, int x_bits, int y_bits, int z_bits) {
 }
 
 template <typename T>
-void make_room(std::vector<T>& v, std::size_t n) {
+void make_room(Buffer<T>& v, std::size_t n) {
   if (v.size() < n) v.resize(n + n / 2);
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "build/buffer.h"
 #include "build/layer_kernels.h"
 #include "build/local_grid.h"
 #include "fasttree/build.h"
@@ -19,8 +20,8 @@ namespace fasttree::build {
 /// Subtrees in pre-order, one after the other. Upper children and first ids count from the
 /// beginning of the two arrays, which have room for more.
 struct LayerOutput {
-  std::vector<Node> nodes;
-  std::vector<std::uint32_t> ids;
+  Buffer<Node> nodes;
+  Buffer<std::uint32_t> ids;
   std::size_t node_count = 0;
   std::size_t id_count = 0;
 };
@@ -74,7 +75,7 @@ class LayerBuilder {
   LayerCells cells_;
   LayerEntries entries_;
   std::array<std::uint32_t, kMostCells> counters_{};
-  std::vector<std::uint32_t> lists_;  // a stack
+  Buffer<std::uint32_t> lists_;  // a stack
   std::size_t lists_end_ = 0;
   std::array<Layer, kRealtimeRule.most_layers> layers_;
 };

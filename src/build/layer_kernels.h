@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "build/buffer.h"
 #include "build/local_grid.h"
 #include "fasttree/build.h"
 #include "fasttree/vec.h"
@@ -18,7 +19,7 @@ inline constexpr std::size_t kLayerPadding = 64;
 
 /// The triangles of a list, one array a coordinate.
 struct LayerTriangles {
-  std::array<std::vector<float>, 9> coordinate;  ///< 3 * corner + axis
+  std::array<Buffer<float>, 9> coordinate;  ///< 3 * corner + axis
   std::size_t size = 0;
 
   /// Room for n triangles; what was there is lost.
@@ -39,16 +40,16 @@ struct LayerTriangles {
 /// Where those triangles are in the layer's grid.
 struct LayerCells {
   /// The corners of each triangle's box of cells.
-  std::array<std::vector<std::int32_t>, 3> lo;
-  std::array<std::vector<std::int32_t>, 3> hi;
+  std::array<Buffer<std::int32_t>, 3> lo;
+  std::array<Buffer<std::int32_t>, 3> hi;
   /// For a box of at most two cells an axis, which of them the triangle is put into: bit x + 2 y +
   /// 4 z is the cell so far from `lo`. Zero for a larger box.
-  std::vector<std::uint8_t> mask;
+  Buffer<std::uint8_t> mask;
   /// Triangles whose mask has to be tested for overlap.
-  std::vector<std::uint32_t> tests;
+  Buffer<std::uint32_t> tests;
   std::size_t test_count = 0;
   /// Triangles with a larger box, in order.
-  std::vector<std::uint32_t> large;
+  Buffer<std::uint32_t> large;
   std::size_t large_count = 0;
 
   void resize(std::size_t n) {
@@ -79,8 +80,8 @@ void mask_layer(const LayerTriangles& triangles, const LocalGrid& grid, Simd sim
 
 /// References of a layer: which cell, and which triangle of the list.
 struct LayerEntries {
-  std::vector<std::uint16_t> code;
-  std::vector<std::uint32_t> triangle;
+  Buffer<std::uint16_t> code;
+  Buffer<std::uint32_t> triangle;
   std::size_t count = 0;
 
   void resize(std::size_t n) {

@@ -64,7 +64,7 @@ void list_cells(const Buckets& buckets, std::size_t ids, Layers& layers) {
 // Takes the large triangles out of the cells they do not overlap. Which of a cell's triangles are
 // large and which of those overlap it cannot be predicted: nothing branches on it.
 void drop_large(const Grid& grid, const Layers::Chunk& chunk, std::span<std::uint32_t> ids,
-                std::vector<std::uint32_t>& places, Layers& layers) {
+                Buffer<std::uint32_t>& places, Layers& layers) {
   for (std::size_t j = chunk.begin; j < chunk.end; ++j) {
     Layers::TopCell& top = layers.cells[j];
     std::uint32_t* const of_cell = ids.data() + top.first;
@@ -105,7 +105,7 @@ std::uint32_t ids_end(const Layers& layers, const Layers::Chunk& chunk, std::siz
 
 // The nodes above the cells' subtrees, from the last to the first as in emit_nodes; and the place
 // of each subtree.
-void emit_top(const Grid& grid, Layers& layers, std::vector<Node>& nodes) {
+void emit_top(const Grid& grid, Layers& layers, Buffer<Node>& nodes) {
   struct Open {
     int m;
     std::uint32_t upper_code;
@@ -234,8 +234,7 @@ void build_layers(const MeshView& mesh, const Grid& grid, const Buckets& buckets
   });
 }
 
-Status assemble(const Grid& grid, Layers& layers, std::vector<Node>& nodes,
-                std::vector<std::uint32_t>& ids) {
+Status assemble(const Grid& grid, Layers& layers, Buffer<Node>& nodes, Buffer<std::uint32_t>& ids) {
   std::uint64_t cells = 0, node_count = 0, id_count = 0;
   for (std::size_t c = 0; c < layers.chunk_count; ++c) {
     const Layers::Chunk& chunk = layers.chunks[c];

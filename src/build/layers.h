@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "build/buckets.h"
+#include "build/buffer.h"
 #include "build/layer_builder.h"
 #include "fasttree/build.h"
 #include "fasttree/mesh.h"
@@ -50,12 +51,12 @@ struct Layers {
       return before + static_cast<std::size_t>(std::popcount(lower));
     }
   };
-  std::vector<LargeTriangle> large;  ///< by id
-  std::vector<LargeWord> is_large;   ///< of all triangles, where any is large
-  std::vector<TopCell> cells;
+  Buffer<LargeTriangle> large;  ///< by id
+  Buffer<LargeWord> is_large;   ///< of all triangles, where any is large
+  Buffer<TopCell> cells;
   std::vector<Chunk> chunks;
   std::size_t chunk_count = 0;
-  tbb::enumerable_thread_specific<std::vector<std::uint32_t>> places;  ///< in a cell's ids
+  tbb::enumerable_thread_specific<Buffer<std::uint32_t>> places;  ///< in a cell's ids
   tbb::enumerable_thread_specific<LayerBuilder> builders;
 };
 
@@ -73,7 +74,6 @@ void build_layers(const MeshView& mesh, const Grid& grid, const Buckets& buckets
                   std::span<std::uint32_t> ids, Simd simd, Layers& layers);
 
 /// Puts the tree together. resource_limit where it has more nodes than a tree can have.
-Status assemble(const Grid& grid, Layers& layers, std::vector<Node>& nodes,
-                std::vector<std::uint32_t>& ids);
+Status assemble(const Grid& grid, Layers& layers, Buffer<Node>& nodes, Buffer<std::uint32_t>& ids);
 
 }  // namespace fasttree::build

@@ -112,7 +112,7 @@ Status bounds_of_triangles(const MeshView& mesh, Workspace& w, Box3& bounds) {
 
 Status sort_into_leaves(const MeshView& whole_mesh, const BuildSettings& settings,
                         std::uint64_t more_bytes_per_reference, double share, StageClock& clock,
-                        Workspace& w, std::vector<std::uint32_t>& ids, BuildStats& stats,
+                        Workspace& w, Buffer<std::uint32_t>& ids, BuildStats& stats,
                         SortedLeaves& sorted) {
   if (Status status = validate_shape(whole_mesh); !status.ok()) return status;
   MeshView mesh = whole_mesh;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "build/buckets.h"
+#include "build/buffer.h"
 #include "build/layers.h"
 #include "build/triangle_boxes.h"
 #include "build/vertex_codes.h"
@@ -26,16 +27,16 @@ struct Workspace {
   Buffer<std::uint32_t> vertex_codes;
   Buffer<CodeBox> boxes;
   Buckets buckets;
-  std::vector<std::uint32_t> first_node_of_bucket;
-  std::vector<std::uint32_t> top_ids;  ///< profile realtime: of the top grid
+  Buffer<std::uint32_t> first_node_of_bucket;
+  Buffer<std::uint32_t> top_ids;  ///< profile realtime: of the top grid
   Layers layers;
 };
 
-/// The arrays of a tree in the making.
+/// The arrays of a tree in the making, which a Tree then keeps and shows.
 struct TreeArrays {
   TreeInfo info;
-  std::vector<Node> nodes;
-  std::vector<std::uint32_t> ids;
+  Buffer<Node> nodes;
+  Buffer<std::uint32_t> ids;
 };
 
 /// What the grid's cells hold, sorted; the cells themselves are in the workspace's buckets.
@@ -49,7 +50,7 @@ struct SortedLeaves {
 /// what the caller is going to take beside. Errors as Builder::build.
 Status sort_into_leaves(const MeshView& mesh, const BuildSettings& settings,
                         std::uint64_t more_bytes_per_reference, double share, StageClock& clock,
-                        Workspace& workspace, std::vector<std::uint32_t>& ids, BuildStats& stats,
+                        Workspace& workspace, Buffer<std::uint32_t>& ids, BuildStats& stats,
                         SortedLeaves& sorted);
 
 /// Builds into `tree`, whose arrays' memory is reused. Errors as Builder::build.

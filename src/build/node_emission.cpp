@@ -57,9 +57,9 @@ void emit_nodes(std::span<const LeafStart> leaves, std::uint32_t reference_end, 
 }
 
 void emit_tree(const BucketGrid& bucket_grid, const Buckets& buckets, const Grid& grid,
-               std::vector<std::uint32_t>& first_node_of_bucket, std::vector<Node>& nodes) {
+               Buffer<std::uint32_t>& first_node_of_bucket, Buffer<Node>& nodes) {
   // The buckets that hold something, and all their leaves.
-  std::vector<std::uint32_t> used;
+  Buffer<std::uint32_t> used;
   std::size_t leaves = 0;
   for (std::uint32_t b = 0; b < bucket_grid.bucket_count(); ++b) {
     if (buckets.leaf_count[b] == 0) continue;

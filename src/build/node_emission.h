@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "build/buckets.h"
+#include "build/buffer.h"
 #include "fasttree/tree.h"
 #include "grid/grid.h"
 
@@ -24,6 +25,6 @@ void emit_nodes(std::span<const LeafStart> leaves, std::uint32_t reference_end, 
 /// The whole tree: each bucket's subtree is one run of nodes, so the nodes above them are written
 /// first, which says where each run begins, and then all runs in parallel. `nodes` is resized.
 void emit_tree(const BucketGrid& bucket_grid, const Buckets& buckets, const Grid& grid,
-               std::vector<std::uint32_t>& first_node_of_bucket, std::vector<Node>& nodes);
+               Buffer<std::uint32_t>& first_node_of_bucket, Buffer<Node>& nodes);
 
 }  // namespace fasttree::build

@@ -41,7 +41,7 @@ TEST(NodeEmission, EqualsPathCompression) {
       for (std::size_t j = 0; j < b.leaves.size(); ++j) {
         leaves.push_back({b.leaves.code[j], b.leaves.first[j]});
       }
-      std::vector<Node> nodes(2 * codes.size() - 1);
+      Buffer<Node> nodes(2 * codes.size() - 1);
       emit_nodes(leaves, first, b.grid, 0, nodes);
       ASSERT_TRUE(std::equal(nodes.begin(), nodes.end(), expected.value().nodes().begin(),
                              expected.value().nodes().end()))

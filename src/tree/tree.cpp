@@ -51,10 +51,10 @@ std::uint64_t Tree::hash() const {
   return hash.digest();
 }
 
-void Tree::release(std::vector<Node>& nodes, std::vector<std::uint32_t>& ids) {
-  nodes = owner_ ? std::vector<Node>() : std::move(nodes_);
-  ids = owner_ ? std::vector<std::uint32_t>() : std::move(ids_);
+std::shared_ptr<const void> Tree::release() {
+  std::shared_ptr<const void> owner = std::move(owner_);
   *this = Tree();
+  return owner;
 }
 
 std::string hash_string(std::uint64_t hash) {
