@@ -11,6 +11,8 @@ AddressMap::AddressMap(const DramSpec& spec, const ControllerConfig& controller)
       rows_(spec.rows),
       columns_(spec.columns),
       burst_mask_(spec.burst_length - 1),
+      bank_hash_(controller.bank_hash),
+      bank_bits_(std::countr_zero(spec.banks)),
       channel_bits_(std::countr_zero(spec.channels)),
       channel_shift_(std::countr_zero(controller.interleave == Interleave::burst
                                           ? spec.access_bytes()

@@ -34,6 +34,12 @@ class AddressMap {
     at.column = (static_cast<std::uint32_t>(inside >> word_shift_) & (columns_ - 1)) & ~burst_mask_;
     at.bank = static_cast<std::uint32_t>(inside >> bank_shift_) & (banks_ - 1);
     at.row = static_cast<std::uint32_t>(inside >> row_shift_) & (rows_ - 1);
+    if (bank_hash_) {
+      // Exclusive or with every part of the row number: still one to one, for the row is kept.
+      for (std::uint32_t rest = at.row; rest != 0 && bank_bits_ != 0; rest >>= bank_bits_) {
+        at.bank ^= rest & (banks_ - 1);
+      }
+    }
     return at;
   }
   std::uint32_t channel(Address address) const {
@@ -42,7 +48,8 @@ class AddressMap {
 
  private:
   std::uint32_t channels_, banks_, rows_, columns_, burst_mask_;
-  int channel_bits_, channel_shift_, word_shift_, bank_shift_, row_shift_;
+  bool bank_hash_;
+  int bank_bits_, channel_bits_, channel_shift_, word_shift_, bank_shift_, row_shift_;
 };
 
 }  // namespace fasttree::model

@@ -64,6 +64,7 @@ void DramChannel::accept(const MemoryRequest& request, const DramLocation& at, P
   queued.waits_for = other.youngest_of(queued.granule, at.bank);
   if (queued.waits_for != kNoSlot) other[queued.waits_for].is_waited_for = true;
   (request.write ? writes_ : reads_).add(queued);
+  forget(at.bank, request.write);
   if (!request.write) last_read_ = queued.arrival;
   next_ = std::min(next_, queued.arrival);
 }
@@ -124,21 +125,28 @@ void DramChannel::consider_refresh(Choice& choice, std::uint64_t clock) const {
                clock);
 }
 
-/// Offers the command that the requests of this bank want most.
-void DramChannel::consider_bank(Choice& choice, std::uint32_t bank, std::uint64_t clock) const {
+const DramChannel::Candidates& DramChannel::candidates(std::uint32_t bank) {
+  Candidates& found = candidates_[bank + (writing_ ? BankTiming::kMaxBanks : 0)];
+  if (found.known) return found;
   const RequestQueue& queue = writing_ ? writes_ : reads_;
   const bool open = timing_.is_open(bank);
-  Slot oldest = kNoSlot;  // that may be served
-  Slot hit = kNoSlot;     // and finds its row open
+  found = {true, kNoSlot, kNoSlot};
   for (Slot slot = queue.first(bank); slot != kNoSlot; slot = queue[slot].next) {
     if (queue[slot].waits_for != kNoSlot) continue;
-    if (oldest == kNoSlot) oldest = slot;
+    if (found.oldest == kNoSlot) found.oldest = slot;
     if (!open) break;
     if (queue[slot].at.row == timing_.open_row(bank)) {
-      hit = slot;
+      found.hit = slot;
       break;
     }
   }
+  return found;
+}
+
+/// Offers the command that the requests of this bank want most.
+void DramChannel::consider_bank(Choice& choice, std::uint32_t bank, std::uint64_t clock) {
+  const RequestQueue& queue = writing_ ? writes_ : reads_;
+  const auto [known, oldest, hit] = candidates(bank);
   if (oldest == kNoSlot) return;
   const bool starving = queue[oldest].arrival + config_.starvation_clocks <= clock;
   if (!starving) {
@@ -150,7 +158,8 @@ void DramChannel::consider_bank(Choice& choice, std::uint32_t bank, std::uint64_
                  timing_.earliest(kind, bank), clock);
     return;
   }
-  const DramCommandKind kind = open ? DramCommandKind::precharge : DramCommandKind::activate;
+  const DramCommandKind kind =
+      timing_.is_open(bank) ? DramCommandKind::precharge : DramCommandKind::activate;
   choice.offer(starving ? kStarving : kRow, queue[oldest].order, kind, bank, oldest,
                timing_.earliest(kind, bank), clock);
 }
@@ -179,6 +188,10 @@ void DramChannel::carry_out(const Choice& choice, std::uint64_t clock) {
     command.column = request.at.column;
   }
   timing_.issue(choice.kind, choice.bank, command.row, clock);
+  if (choice.kind == DramCommandKind::activate || choice.kind == DramCommandKind::precharge) {
+    forget(choice.bank, false);
+    forget(choice.bank, true);
+  }
   if (observer_ != nullptr) observer_->on_command(command);
   switch (choice.kind) {
     case DramCommandKind::read:
@@ -211,7 +224,12 @@ void DramChannel::finish(Slot slot, std::uint64_t clock) {
     completions_.push({request.tag, false, at});
     record_read_latency(statistics_, at - request.accepted);
   }
-  if (request.is_waited_for) (writing_ ? reads_ : writes_).release_waiting_for(slot);
+  if (request.is_waited_for) {
+    // Same bytes, same bank.
+    (writing_ ? reads_ : writes_).release_waiting_for(slot, request.at.bank);
+    forget(request.at.bank, !writing_);
+  }
+  forget(request.at.bank, writing_);
   queue.remove(slot);
 }
 

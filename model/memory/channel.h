@@ -41,15 +41,26 @@ class DramChannel {
 
  private:
   struct Choice;
+  /// Of a bank's requests in one direction, that may be served: the oldest, and the oldest that
+  /// finds its row open. Looked up anew only after a change.
+  struct Candidates {
+    bool known = false;
+    Slot oldest = kNoSlot;
+    Slot hit = kNoSlot;
+  };
 
   /// One clock: issues at most one command; gives the next clock at which there may be work.
   std::uint64_t step(std::uint64_t clock);
   std::uint64_t choose_direction(std::uint64_t clock);
   bool starving(const RequestQueue& queue, std::uint64_t clock) const;
   void consider_refresh(Choice& choice, std::uint64_t clock) const;
-  void consider_bank(Choice& choice, std::uint32_t bank, std::uint64_t clock) const;
+  void consider_bank(Choice& choice, std::uint32_t bank, std::uint64_t clock);
+  const Candidates& candidates(std::uint32_t bank);
   void carry_out(const Choice& choice, std::uint64_t clock);
   void finish(Slot slot, std::uint64_t clock);
+  void forget(std::uint32_t bank, bool write) {
+    candidates_[bank + (write ? BankTiming::kMaxBanks : 0)].known = false;
+  }
 
   DramSpec spec_;
   ControllerConfig config_;
@@ -59,6 +70,7 @@ class DramChannel {
   RefreshSchedule refresh_;
   RequestQueue reads_;
   RequestQueue writes_;
+  std::array<Candidates, 2 * BankTiming::kMaxBanks> candidates_;  ///< of reads, then of writes
   CompletionQueue completions_;
   CommandObserver* observer_ = nullptr;
 

@@ -94,15 +94,12 @@ class RequestQueue {
     return kNoSlot;
   }
 
-  /// Nobody waits for this slot of the other queue any more.
-  void release_waiting_for(Slot of_other) {
-    for (std::uint32_t rest = banks_; rest != 0; rest &= rest - 1) {
-      for (Slot slot = first_[static_cast<std::size_t>(std::countr_zero(rest))]; slot != kNoSlot;
-           slot = (*this)[slot].next) {
-        if ((*this)[slot].waits_for != of_other) continue;
-        (*this)[slot].waits_for = kNoSlot;
-        --waiting_;
-      }
+  /// Nobody waits for this slot of the other queue, a request to this bank, any more.
+  void release_waiting_for(Slot of_other, std::uint32_t bank) {
+    for (Slot slot = first_[bank]; slot != kNoSlot; slot = (*this)[slot].next) {
+      if ((*this)[slot].waits_for != of_other) continue;
+      (*this)[slot].waits_for = kNoSlot;
+      --waiting_;
     }
   }
 
