@@ -88,15 +88,17 @@ std::uint64_t DramChannel::choose_direction(std::uint64_t clock) {
   const bool many = writes_.count() >= config_.write_drain_high;
   const std::uint64_t reads_starve = starves_at(reads_);
   const std::uint64_t writes_starve = starves_at(writes_);
+  // Where both sides have waited too long, the older goes first.
+  const bool reads_first = reads_starve <= clock && reads_starve <= writes_starve;
   if (writing_) {
     const bool few = writes_.count() <= config_.write_drain_low || (in_no_hurry_ && !many);
     const bool may_stop = few && !read_needs_write && writes_starve > clock;
-    if (reads_starve <= clock || may_stop) writing_ = false;
-    return writing_ ? reads_starve : kNever;
+    if (reads_first || may_stop) writing_ = false;
+    return writing_ && reads_starve > clock ? reads_starve : kNever;
   }
   if (reads) {
     const bool must_write = many || read_needs_write || writes_starve <= clock;
-    writing_ = must_write && reads_starve > clock;
+    writing_ = must_write && !reads_first;
     in_no_hurry_ = false;
     return !must_write && writes_starve > clock ? writes_starve : kNever;
   }
