@@ -70,6 +70,17 @@ std::optional<FieldValue> value_of(const toml::node& node) {
   return std::nullopt;
 }
 
+/// Plain ASCII alone: on some other characters toml++ 3.3 runs into undefined behaviour.
+Status check_characters(std::string_view text, const std::string& origin) {
+  std::size_t line = 1;
+  for (const char c : text) {
+    if (c == '\n') ++line;
+    if ((c >= 0x20 && c < 0x7f) || c == '\n' || c == '\r' || c == '\t') continue;
+    return refuse(origin + ", line " + std::to_string(line) + ": is not plain ASCII text");
+  }
+  return {};
+}
+
 struct Reader {
   const std::string& origin;
   MachineConfig& config;
@@ -182,6 +193,7 @@ std::vector<std::string> config_names() {
 
 Result<MachineConfig> parse_config(std::string_view text, const std::string& origin) {
   if (text.size() > kMaxBytes) return refuse(origin + ": is longer than a configuration can be");
+  if (Status status = check_characters(text, origin); !status.ok()) return status;
   const toml::parse_result parsed = toml::parse(text, origin);
   if (!parsed) {
     const toml::parse_error& error = parsed.error();

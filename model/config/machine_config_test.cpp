@@ -72,6 +72,8 @@ TEST(MachineConfig, WrongValuesAreRefusedWithWhatIsAllowed) {
   EXPECT_TRUE(says(error_of("architecture = \"fasttree-2\"\n[paper]\n"),
                    {"section [paper] in line 2 is of architecture 'paper'"}));
   EXPECT_TRUE(says(error_of("clock_mhz 3"), {"test, line 1"}));
+  EXPECT_TRUE(says(error_of("# \n# \xc3\xb6"), {"line 2", "ASCII"}));
+  EXPECT_TRUE(says(error_of(std::string("a = 1\0", 6)), {"line 1", "ASCII"}));
 }
 
 TEST(MachineConfig, PresetComesBeforeTheOtherKeysWhereverItStands) {
@@ -166,6 +168,18 @@ TEST(MachineConfig, TruncationsAreReadOrRefused) {
 
 RC_GTEST_PROP(MachineConfig, RandomBytesAreReadOrRefused, (const std::string& bytes)) {
   const auto result = parse_config(bytes, "random");
+  if (!result.ok()) RC_ASSERT(!result.status().message().empty());
+}
+
+RC_GTEST_PROP(MachineConfig, RandomTextIsReadOrRefused, ()) {
+  // The characters that mean something in TOML, and a few that do not.
+  const std::string alphabet = "[]{}=.,\"'#\\\n\r\t +-_:0123456789abcdefTxuUeinZ";
+  std::string text;
+  const int length = *rc::gen::inRange(0, 60);
+  for (int i = 0; i < length; ++i) {
+    text += alphabet[*rc::gen::inRange<std::size_t>(0, alphabet.size())];
+  }
+  const auto result = parse_config(text, "random");
   if (!result.ok()) RC_ASSERT(!result.status().message().empty());
 }
 
