@@ -3,8 +3,8 @@
 // Docs: docs/accelerator/prefix_sum.md.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -16,9 +16,21 @@ namespace fasttree::model {
 
 inline constexpr std::uint32_t kMaxSection = 64;
 
-/// A section to be summed, and the section with its exclusive sums.
+/// A section to be summed, and the section with its exclusive sums. Copies only what is in use.
 struct Section {
-  std::array<std::uint32_t, kMaxSection> values;
+  Section() = default;
+  explicit Section(std::uint32_t count) : length(count) {}
+  Section(const Section& other) { *this = other; }
+  Section& operator=(const Section& other) {
+    std::memcpy(values, other.values, other.length * sizeof values[0]);
+    length = other.length;
+    total = other.total;
+    tag = other.tag;
+    return *this;
+  }
+
+  std::uint32_t values[kMaxSection];
+  std::uint32_t length = 0;
   std::uint32_t total = 0;  ///< of all values; of a result
   std::uint32_t tag = 0;    ///< the caller's
 };
@@ -48,9 +60,9 @@ class PrefixSumUnit : public Unit {
     bool full = false;
     Section section;
   };
-  bool holds_any() const;
 
   std::uint32_t section_;
+  std::uint32_t held_ = 0;     ///< sections in the stages
   std::vector<Stage> stages_;  ///< up-sweep in the first half, down-sweep in the second
 };
 

@@ -9,6 +9,7 @@ namespace fasttree::model {
 namespace {
 
 enum Stall : std::size_t { kBusRead, kBusWrite, kPrefixSum };
+constexpr std::uint16_t kNoDigit = 0xffff;
 
 }  // namespace
 
@@ -30,6 +31,7 @@ RadixSortUnit::RadixSortUnit(const PaperConfig& config, BusPort& port,
     buffer.code.resize(capacity_);
     buffer.id.resize(capacity_);
     buffer.place.resize(capacity_);
+    buffer.digit.resize(capacity_);
   }
 }
 
@@ -119,9 +121,9 @@ bool RadixSortUnit::offsets() {
       waits_ = kPrefixSum;
       return false;
     }
-    Section section;
-    section.values.fill(0);
-    std::copy_n(counts_.begin() + first, count, section.values.begin());
+    Section section(length);
+    std::fill_n(section.values, length, 0);
+    std::copy_n(counts_.begin() + first, count, section.values);
     psu.input.push(section);
     offset_asked_ = true;
     return true;
@@ -204,7 +206,9 @@ void RadixSortUnit::unpack(Buffer& buffer) {
   for (std::uint32_t i = 0; i < buffer.count; ++i) {
     unpack_pair(config_, buffer.raw.data() + std::size_t{i} * pair_size_, buffer.code[i],
                 buffer.id[i]);
+    buffer.digit[i] = static_cast<std::uint16_t>(digit(buffer.code[i], round_.number));
   }
+  std::fill(buffer.digit.begin() + buffer.count, buffer.digit.end(), kNoDigit);
 }
 
 // For each digit every unit sums the flags of the pairs with that digit: their ranks.
@@ -227,12 +231,10 @@ void RadixSortUnit::send_flags() {
   const Buffer& buffer = buffers_[working_];
   const std::uint32_t length = config_.prefix_sum.section;
   for (std::uint32_t p = 0; p < psus_.size(); ++p) {
-    Section section;
-    const std::uint32_t first = p * length;
-    for (std::uint32_t i = 0; i < length; ++i) {
-      section.values[i] =
-          first + i < buffer.count && digit(buffer.code[first + i], round_.number) == asked_digits_;
-    }
+    Section section(length);
+    const std::uint16_t* digits = buffer.digit.data() + p * length;
+    const auto asked = static_cast<std::uint16_t>(asked_digits_);
+    for (std::uint32_t i = 0; i < length; ++i) section.values[i] = digits[i] == asked;
     section.tag = asked_digits_;
     psus_[p]->input.push(section);
   }
@@ -246,12 +248,11 @@ void RadixSortUnit::collect_sums() {
   std::uint32_t offset = begin_[summed_digits_];
   for (std::uint32_t p = 0; p < psus_.size(); ++p) {
     const Section& sums = psus_[p]->output.front();
-    const std::uint32_t first = p * length;
-    const std::uint32_t count = first < buffer.count ? std::min(length, buffer.count - first) : 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      if (digit(buffer.code[first + i], round_.number) == sums.tag) {
-        buffer.place[first + i] = offset + sums.values[i];
-      }
+    const std::uint16_t* digits = buffer.digit.data() + p * length;
+    std::uint32_t* places = buffer.place.data() + p * length;
+    const auto summed = static_cast<std::uint16_t>(sums.tag);
+    for (std::uint32_t i = 0; i < length; ++i) {
+      places[i] = digits[i] == summed ? offset + sums.values[i] : places[i];
     }
     offset += sums.total;
     psus_[p]->output.drop();
@@ -284,7 +285,7 @@ bool RadixSortUnit::scatter() {
 
 // To its place, through the block that gathers its digit's pairs.
 bool RadixSortUnit::place(const Buffer& buffer, std::uint32_t i) {
-  const std::uint32_t d = digit(buffer.code[i], round_.number);
+  const std::uint32_t d = buffer.digit[i];
   const std::uint64_t at = buffer.place[i];
   if (!round_.last) {
     std::uint8_t bytes[8];

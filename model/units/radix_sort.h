@@ -47,8 +47,9 @@ class RadixSortUnit : public Unit {
   struct Buffer {
     std::vector<std::uint8_t> raw;
     std::vector<std::uint32_t> code, id, place;
-    std::uint32_t bytes = 0;  ///< fetched
-    std::uint32_t want = 0;   ///< bytes of the section; 0: none being fetched
+    std::vector<std::uint16_t> digit;  ///< of this round; no digit behind the last pair
+    std::uint32_t bytes = 0;           ///< fetched
+    std::uint32_t want = 0;            ///< bytes of the section; 0: none being fetched
     std::uint32_t count = 0;
   };
 
