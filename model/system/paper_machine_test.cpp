@@ -247,14 +247,15 @@ TEST(PaperMachine, ALostBeatIsNoticed) {
     hooks.drop_beat = beat;
     const Result<SimulationResult> result = simulate(soup().view(), config, hooks);
     if (!result.ok()) {
-      ++stuck;
+      // Where pairs are missing, what lay there before is no code, and the image no tree.
+      ++(result.status().message().find("stuck") != std::string::npos ? stuck : wrong);
       continue;
     }
     EXPECT_NE(test::difference(soup().view(), config.paper, result.value()), "") << beat;
     ++wrong;
   }
-  EXPECT_GT(stuck, 5) << "a read waits for ever";
-  EXPECT_GT(wrong, 5) << "a write is missing";
+  EXPECT_GT(stuck, 20) << "a read waits for ever";
+  EXPECT_GT(wrong, 20) << "a write is missing";
 }
 
 TEST(PaperMachine, AWrongVictimShowsInTheCachesHits) {
