@@ -152,6 +152,25 @@ RC_GTEST_PROP(PaperMachine, TakesTheSameCyclesInEveryOrderOfItsUnits, ()) {
   }
 }
 
+/// Real memories as well: latencies that depend on addresses, refresh, reordering.
+TEST(PaperMachine, MakesTheSameBytesWithEveryMemory) {
+  const fasttree::test::OwnedMesh mesh = fasttree::test::soup(3000, 8, 0.05f);
+  SimulationOptions options;
+  options.keep_arrays = true;
+  std::uint64_t ideal = 0;
+  for (const std::string& preset : memory_presets()) {
+    MachineConfig config = machine();
+    config.memory = memory_preset(preset).value();
+    const Result<SimulationResult> result = simulate_paper(mesh.view(), config, options);
+    ASSERT_TRUE(result.ok()) << preset << ": " << result.status().message();
+    EXPECT_EQ(test::difference(mesh.view(), config.paper, result.value()), "") << preset;
+    EXPECT_EQ(result.value().memory_traits.name, preset);
+    if (preset == "ideal") ideal = result.value().cycles;
+    EXPECT_GE(result.value().cycles, ideal) << preset;
+  }
+  EXPECT_GT(ideal, 0u);
+}
+
 const fasttree::test::OwnedMesh& soup() {
   static const fasttree::test::OwnedMesh mesh = fasttree::test::soup(2000, 8, 0.05f);
   return mesh;
