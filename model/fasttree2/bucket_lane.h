@@ -3,7 +3,9 @@
 // once to count and once to place; the counters are the leaf table.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "model/fasttree2/cell_levels.h"
@@ -49,8 +51,6 @@ class BucketLane : public Unit {
   void accept(const BucketTask& task, std::uint64_t ticket);
 
   Queue<LeafEntry>& leaves() { return leaves_; }
-  /// The bucket whose leaves come, or will come next, out of leaves().
-  std::uint64_t leaf_ticket() const { return ticket_; }
 
   void tick() override;
   bool done() const override { return state_ == State::idle && !has_next_; }

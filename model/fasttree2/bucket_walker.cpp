@@ -52,7 +52,7 @@ void BucketWalker::begin_partition(const BucketTask& task) {
   // room to spare: parts of a surface are filled unevenly.
   int bits = std::max(1, cell_bits - lane_cell_bits);
   while ((task.chain.count >> bits) * 4 > r_.config.lane_records) ++bits;
-  part_bits_ = std::min({bits, cell_bits, std::bit_width(r_.config.sub_buckets) - 1});
+  part_bits_ = std::min({bits, cell_bits, static_cast<int>(std::bit_width(r_.config.sub_buckets)) - 1});
   task_ = task;
   left_ = task.chain.count;
   partitioning_ = true;

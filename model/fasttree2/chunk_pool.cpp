@@ -18,7 +18,7 @@ ChunkPool::ChunkPool(Registers& registers, Dma& dma)
       read_(dma.add_read("free chunks", kSpillBytes)),
       write_(dma.add_write("free chunks", kSpillBytes)),
       // Spilling and refilling both leave half of it, so that they do not follow each other.
-      slots_(std::max(registers.config.free_chunk_slots, 3 * kSpillIds)) {
+      slots_(std::max(registers.config.free_chunks, 3 * kSpillIds)) {
   free_.reserve(slots_);
 }
 
@@ -26,6 +26,7 @@ void ChunkPool::begin(std::uint32_t first) {
   next_ = first;
   free_.clear();
   spilled_lines_ = 0;
+  exhausted_ = false;
 }
 
 std::uint32_t ChunkPool::allocate() {
@@ -36,7 +37,7 @@ std::uint32_t ChunkPool::allocate() {
     return chunk;
   }
   if (next_ >= r_.layout.chunk_count) {
-    r_.fail("chunk_pool: all " + std::to_string(r_.layout.chunk_count) + " chunks are in use");
+    exhausted_ = true;
     return 0;
   }
   return next_++;

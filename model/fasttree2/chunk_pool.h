@@ -30,6 +30,8 @@ class ChunkPool : public Unit {
   std::string waits_for() const override;
 
   std::uint64_t most_chunks() const { return next_; }
+  /// One was asked for when all were in use.
+  bool exhausted() const { return exhausted_; }
 
  private:
   static constexpr std::uint32_t kSpillIds = 8;
@@ -41,6 +43,7 @@ class ChunkPool : public Unit {
   std::size_t slots_;
   std::vector<std::uint32_t> free_;
   std::uint32_t next_ = 0;
+  bool exhausted_ = false;
   std::uint64_t spilled_lines_ = 0;
   bool refilling_ = false;
   std::uint32_t refill_left_ = 0;  ///< ids still to come of the line that is read

@@ -25,6 +25,12 @@ void MortonCode::begin() {
   records_ = 0;
 }
 
+void MortonCode::abandon() {
+  active_ = false;
+  walk_ = BoxWalk();
+  while (!boxes_.empty()) boxes_.pop();
+}
+
 bool MortonCode::quantise() {
   // `quantisers` results a cycle; what is left of a cycle goes to the next triangle.
   credit_ = std::min(credit_ + r_.config.quantisers,
@@ -66,7 +72,10 @@ bool MortonCode::emit() {
 }
 
 void MortonCode::tick() {
-  if (!active_) return idle();
+  if (!active_) {
+    if (in_.valid()) in_.pop();
+    return idle();
+  }
   const bool emitted = emit();
   const bool quantised = quantise();
   if (emitted || quantised) return busy();

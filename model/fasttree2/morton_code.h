@@ -26,6 +26,8 @@ class MortonCode : public Unit {
 
   /// The grid is in the registers.
   void begin();
+  /// Drops what is under way, and takes no more.
+  void abandon();
   void tick() override;
   bool done() const override;
   std::string waits_for() const override;

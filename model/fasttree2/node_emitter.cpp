@@ -111,7 +111,8 @@ void NodeEmitter::tick() {
   if (!active_) return idle();
   if (order_.next_leaves < order_.next_ticket) {
     for (const auto& lane : lanes_) {
-      if (lane->leaf_ticket() != order_.next_leaves || !lane->leaves().valid()) continue;
+      // Only the lane whose bucket is due has put leaves into its queue.
+      if (!lane->leaves().valid()) continue;
       const LeafEntry leaf = lane->leaves().front();
       const std::uint64_t before = leaf_count_;
       const bool worked = take_leaf(leaf);

@@ -47,6 +47,14 @@ Box3 SceneBound::bounds() const {
   return b;
 }
 
+bool SceneBound::outside(const Box3& given) const {
+  if (seen_ == 0) return false;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (bounds_.lo[a] < given.lo[a] || bounds_.hi[a] > given.hi[a]) return true;
+  }
+  return false;
+}
+
 std::string SceneBound::waits_for() const {
   if (done()) return "";
   return "scene_reader for triangle " + std::to_string(seen_);

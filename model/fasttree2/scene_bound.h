@@ -21,6 +21,8 @@ class SceneBound : public Unit {
 
   /// Minus zero has become plus zero; all zero for an empty scene.
   Box3 bounds() const;
+  /// A triangle so far was outside these.
+  bool outside(const Box3& given) const;
 
  private:
   Registers& r_;

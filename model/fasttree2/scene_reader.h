@@ -26,9 +26,13 @@ class SceneReader : public Unit {
   /// Starts a pass over the scene.
   void begin(bool to_bounds, bool to_codes);
 
+  /// The triangles that are left go to the bounds alone.
+  void bounds_only() { to_codes_ = false; }
+
   void tick() override;
   bool done() const override { return sent_ == r_.triangles; }
   std::string waits_for() const override;
+  std::uint32_t sent() const { return sent_; }
   double fraction() const { return r_.triangles ? double(sent_) / r_.triangles : 1.0; }
 
  private:

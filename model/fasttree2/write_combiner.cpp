@@ -104,7 +104,10 @@ bool WriteCombiner::flush() {
 }
 
 void WriteCombiner::tick() {
-  if (!active_) return idle();
+  if (!active_) {
+    if (in_.valid()) in_.pop();
+    return idle();
+  }
   bool worked = false;
   if (in_.valid()) {
     worked = append();

@@ -30,6 +30,9 @@ class WriteCombiner : public Unit {
   /// No more records come after those in the queue: write out what is gathered.
   void finish() { finishing_ = true; }
 
+  /// Forgets all records; those in the queue are dropped as well.
+  void abandon() { active_ = false; }
+
   void tick() override;
   /// Flushed, and accepted by the memory.
   bool done() const override { return !active_ && port_.drained(); }
