@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lane: the counting sort of one bucket, all of it on chip. Records are expanded into cells twice,
-// once to count and once to place; the counters are the leaf table.
+// A lane: the counting sort of one bucket after the other, all of it on chip. Records are expanded
+// into cells twice, once to count and once to place; the counters are the leaf table. The front of
+// a lane loads, counts and sums the next bucket while its back places and streams out the last.
 #pragma once
 
 #include <array>
@@ -8,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "model/fasttree2/cell_levels.h"
+#include "model/fasttree2/block_walk.h"
 #include "model/fasttree2/record_reader.h"
 #include "model/fasttree2/registers.h"
 #include "model/kernel/queue.h"
@@ -45,40 +46,55 @@ class BucketLane : public Unit {
   BucketLane(std::string name, Registers& registers, Dma& dma, ChunkPool& pool, BucketOrder& order,
              WritePort& ids);
 
-  /// Holds nothing, or is at the end of a bucket and can prefetch the next.
+  /// Its front is empty, or done with loading, so that the next bucket can be prefetched.
   bool can_accept() const;
-  bool free() const { return state_ == State::idle && !has_next_; }
+  bool free() const { return front_state_ == Front::idle && !has_next_; }
   void accept(const BucketTask& task, std::uint64_t ticket);
 
   Queue<LeafEntry>& leaves() { return leaves_; }
 
   void tick() override;
-  bool done() const override { return state_ == State::idle && !has_next_; }
+  bool done() const override { return free() && back_state_ == Back::idle; }
   std::string waits_for() const override;
 
  private:
-  enum class State : std::uint8_t { idle, count, prefix, place, rewind, stream, pass };
+  enum class Front : std::uint8_t { idle, count, prefix, ready };
+  enum class Back : std::uint8_t { idle, place, rewind, stream, pass };
 
-  /// Goes over a record's cells block by block.
-  struct BlockWalk {
-    BoxWalk boxes;
-    std::uint32_t word = 0;
-    std::uint8_t mask = 0;
+  /// A bucket, with one of the two sets of counters.
+  struct Bucket {
+    BucketTask task;
+    std::uint64_t ticket = 0;
+    std::uint32_t base = 0;    ///< of its records in their ring
+    std::uint32_t loaded = 0;  ///< records in the ring
+    std::uint64_t total = 0;   ///< references
+    std::uint32_t words = 0;   ///< of counters, eight each
+    bool index_taken = false;
+    std::uint64_t first = 0;  ///< of its ids
+    std::vector<std::uint32_t> counters;
   };
-  void begin_bucket();
-  void begin_record(const Record& record);
-  void load_block();
-  void next_block();
 
+  std::uint32_t slot(const Bucket& bucket, std::uint32_t record) const {
+    const std::uint32_t at = bucket.base + record;
+    return at >= ring_size_ ? at - ring_size_ : at;
+  }
+  bool passes(const Bucket& bucket) const;
+  bool take_index(Bucket& bucket);
+
+  bool tick_front();
+  bool begin_bucket();
   bool count();
   bool sum_prefixes();
+
+  bool tick_back();
+  void begin_back();
+  void end_back();
   bool place();
   bool rewind();
   bool stream();
   bool walk_leaves();
   bool pass_through();
   bool put_id(std::uint32_t id);
-  bool take_index();
 
   Registers& r_;
   RecordReader reader_;
@@ -86,33 +102,36 @@ class BucketLane : public Unit {
   WritePort& ids_;
   Queue<LeafEntry> leaves_;
 
-  State state_ = State::idle;
-  bool has_next_ = false;
-  BucketTask task_, next_;
-  std::uint64_t ticket_ = 0, next_ticket_ = 0;
-  std::size_t reason_ = 0;
-
   // The memories of the lane.
-  std::vector<Record> records_;
-  std::vector<std::uint32_t> counters_;
-  std::vector<std::uint16_t> placed_;  ///< references: which of the records
+  std::uint32_t ring_size_;
+  std::vector<Record> records_;        ///< ring of both buckets' records
+  std::vector<std::uint32_t> placed_;  ///< references: which of the records
+  std::uint32_t ring_next_ = 0;
+  std::uint32_t ring_used_ = 0;
 
-  std::uint32_t loaded_ = 0;
+  bool has_next_ = false;
+  BucketTask next_;
+  std::uint64_t next_ticket_ = 0;
+
+  Front front_state_ = Front::idle;
+  std::size_t front_reason_ = 0;
+  Bucket front_;
+  BlockWalk front_walk_;
+  std::uint32_t front_word_ = 0;
+  std::uint32_t front_sum_ = 0;
+
+  Back back_state_ = Back::idle;
+  std::size_t back_reason_ = 0;
+  Bucket back_;
+  BlockWalk back_walk_;
   std::uint32_t current_ = 0;  ///< record that is placed
-  BlockWalk walk_;
-  std::uint64_t total_ = 0;  ///< references of the bucket
-  std::uint32_t words_ = 0;
-  std::uint32_t word_ = 0;
-  std::uint32_t carry_ = 0;
-  std::uint64_t window_ = 0;  ///< first reference that is placed in this pass
-  bool index_taken_ = false;
-  std::uint64_t first_ = 0;  ///< of the bucket's ids
-
+  std::uint64_t window_ = 0;   ///< first reference that is placed in this pass
+  std::uint32_t back_word_ = 0;
+  std::uint32_t back_end_ = 0;
   std::uint64_t streamed_ = 0;
   std::uint64_t id_address_ = 0;
   std::uint32_t line_fill_ = 0;  ///< bytes
   std::array<std::uint8_t, kMaxBeatBytes> line_{};
-
   bool leaves_done_ = false;
   std::uint32_t leaf_cell_ = 0;  ///< one past the next cell to look at
 };

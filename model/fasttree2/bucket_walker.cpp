@@ -52,7 +52,8 @@ void BucketWalker::begin_partition(const BucketTask& task) {
   // room to spare: parts of a surface are filled unevenly.
   int bits = std::max(1, cell_bits - lane_cell_bits);
   while ((task.chain.count >> bits) * 4 > r_.config.lane_records) ++bits;
-  part_bits_ = std::min({bits, cell_bits, static_cast<int>(std::bit_width(r_.config.sub_buckets)) - 1});
+  part_bits_ =
+      std::min({bits, cell_bits, static_cast<int>(std::bit_width(r_.config.sub_buckets)) - 1});
   task_ = task;
   left_ = task.chain.count;
   partitioning_ = true;
@@ -102,8 +103,8 @@ bool BucketWalker::partition() {
     return false;
   }
   const Cell& at = walk_.at();
-  const std::uint32_t code = r_.levels.grid().morton_code(
-      {at[0] << inside[0], at[1] << inside[1], at[2] << inside[2]});
+  const std::uint32_t code =
+      r_.levels.grid().morton_code({at[0] << inside[0], at[1] << inside[1], at[2] << inside[2]});
   const std::uint32_t part = code >> (r_.levels.depth() - prefix_bits) & ((1u << part_bits_) - 1);
   to_second_.push({part, {id_, walk_.inside()}});
   ++partitioned_records_;

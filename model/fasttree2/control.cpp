@@ -10,7 +10,7 @@ namespace fasttree::model::ft2 {
 
 namespace {
 
-constexpr std::uint64_t kLookEvery = 1 << 12;       ///< cycles between looks at limits and progress
+constexpr std::uint64_t kLookEvery = 1 << 12;    ///< cycles between looks at limits and progress
 constexpr std::uint64_t kReportEvery = 1 << 16;  ///< cycles between calls of the progress callback
 
 Registers make_registers(const HostPlan& plan, std::uint32_t triangles,
@@ -50,8 +50,8 @@ Machine::Machine(const HostPlan& plan, std::uint32_t triangles, const FastTree2C
       given_(extras.given_bounds.value_or(plan.bounds)) {
   WritePort& ids = dma_.add_write("ids", config.write_buffer_bytes);
   for (std::uint32_t i = 0; i < config.lanes; ++i) {
-    lanes_.push_back(std::make_unique<BucketLane>("lane" + std::to_string(i), r_, dma_, pool_,
-                                                  order_, ids));
+    lanes_.push_back(
+        std::make_unique<BucketLane>("lane" + std::to_string(i), r_, dma_, pool_, order_, ids));
   }
   // The dma comes first: it begins the cycle.
   units_ = {&dma_, &reader_, &bound_, &codes_, &first_, &pool_, &walker_, &second_};

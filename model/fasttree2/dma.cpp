@@ -102,7 +102,8 @@ void Dma::tick() {
   MemoryCompletion completion;
   while (memory_.take(completion)) {
     moved = true;
-    if (!completion.write) reads_[completion.tag >> 16]->ring_[completion.tag & 0xffff].arrived = true;
+    if (!completion.write)
+      reads_[completion.tag >> 16]->ring_[completion.tag & 0xffff].arrived = true;
   }
   const std::size_t ports = reads_.size() + writes_.size();
   std::uint32_t budget = channels_;
@@ -114,8 +115,9 @@ void Dma::tick() {
       moved = true;
       next_port_ = port + 1 == ports ? 0 : port + 1;
     } else {
-      const Port& p = port >= reads_.size() ? static_cast<const Port&>(*writes_[port - reads_.size()])
-                                            : *reads_[port];
+      const Port& p = port >= reads_.size()
+                          ? static_cast<const Port&>(*writes_[port - reads_.size()])
+                          : *reads_[port];
       waiting |= p.pending();
     }
     port = port + 1 == ports ? 0 : port + 1;

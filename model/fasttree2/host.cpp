@@ -37,10 +37,10 @@ std::uint64_t most_chunks(std::uint64_t references, std::uint64_t buckets,
 
 Status check(const FastTree2Config& c) {
   if (c.chunk_bytes < c.combine_bytes) {
-    return {StatusCode::invalid_argument, "fasttree2.chunk_bytes (" + std::to_string(c.chunk_bytes) +
-                                              ") is under fasttree2.combine_bytes (" +
-                                              std::to_string(c.combine_bytes) +
-                                              "); a chunk holds at least one line"};
+    return {StatusCode::invalid_argument,
+            "fasttree2.chunk_bytes (" + std::to_string(c.chunk_bytes) +
+                ") is under fasttree2.combine_bytes (" + std::to_string(c.combine_bytes) +
+                "); a chunk holds at least one line"};
   }
   return {};
 }
@@ -70,8 +70,7 @@ Result<HostPlan> make_plan(const MeshView& mesh, const FastTree2Config& config) 
   const CellLevels levels(grid);
   const int bucket_bits = std::min<int>(std::bit_width(config.buckets) - 1, plan.depth);
   ChunkFormat format{config.chunk_bytes, config.combine_bytes, 0};
-  format.record_bytes =
-      RecordFormat(mesh.triangle_count, levels.bits_below(bucket_bits)).bytes();
+  format.record_bytes = RecordFormat(mesh.triangle_count, levels.bits_below(bucket_bits)).bytes();
 
   Layout& l = plan.layout;
   l.chunk_count = most_chunks(plan.references, std::uint64_t{1} << bucket_bits, config, format);

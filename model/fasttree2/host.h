@@ -31,9 +31,9 @@ Status check(const FastTree2Config& config);
 
 void upload_scene(const MeshView& mesh, Address to, ByteStore& store);
 
-/// The tree as it lies in memory. Nodes were written backwards, from the last slot down, so the root
-/// is in slot `root`; a tracer that is told so reads them in place. In the library's tree the root
-/// is node 0, so that number is taken off every link.
+/// The tree as it lies in memory. Nodes were written backwards, from the last slot down, so the
+/// root is in slot `root`; a tracer that is told so reads them in place. In the library's tree the
+/// root is node 0, so that number is taken off every link.
 Tree download_tree(const ByteStore& store, const Registers& registers, std::uint64_t root);
 
 }  // namespace fasttree::model::ft2

@@ -35,15 +35,15 @@ struct Extras {
 
 /// Figures of the machine beside those of every simulation.
 struct Figures {
-  std::uint64_t records = 0;              ///< of the first partition
+  std::uint64_t records = 0;  ///< of the first partition
   std::uint32_t record_bytes = 0;
-  std::uint64_t partitions = 0;           ///< buckets partitioned once more
+  std::uint64_t partitions = 0;  ///< buckets partitioned once more
   std::uint64_t partitioned_records = 0;
-  std::uint64_t most_chunks = 0;          ///< of memory's chunks in use or used before
+  std::uint64_t most_chunks = 0;  ///< of memory's chunks in use or used before
   std::uint64_t plane_hits = 0;
   std::uint64_t plane_misses = 0;
   std::size_t most_stacked = 0;
-  std::uint32_t generations = 0;          ///< 2 where given bounds were wrong
+  std::uint32_t generations = 0;  ///< 2 where given bounds were wrong
 };
 
 /// The same with any memory.

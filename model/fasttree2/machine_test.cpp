@@ -19,8 +19,8 @@ Result<Tree> reference_tree(const MeshView& mesh, const FastTree2Config& config)
   settings.profile = Profile::paper;
   settings.implementation = Implementation::reference;
   settings.axes = config.axes;
-  settings.depth = config.depth == FastTree2Config::kDepthByRule ? kAutoDepth
-                                                                 : static_cast<int>(config.depth);
+  settings.depth =
+      config.depth == FastTree2Config::kDepthByRule ? kAutoDepth : static_cast<int>(config.depth);
   settings.extra_depth = static_cast<int>(config.extra_depth);
   settings.max_growth = config.max_growth;
   return Builder().build(mesh, settings);

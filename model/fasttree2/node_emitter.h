@@ -41,8 +41,8 @@ class NodeEmitter : public Unit {
     int m = 0;  ///< highest different bit of the two leaves it lies between
     std::uint32_t axis = 0;
     float plane = 0;
-    std::uint32_t upper = 0;       ///< slot of the upper child
-    std::uint64_t known_at = 0;    ///< cycle in which the plane is known
+    std::uint32_t upper = 0;     ///< slot of the upper child
+    std::uint64_t known_at = 0;  ///< cycle in which the plane is known
   };
   bool put(const Node& node);
   bool close();
@@ -61,7 +61,7 @@ class NodeEmitter : public Unit {
   std::size_t open_count_ = 0;
   std::uint64_t next_ = 0;  ///< slot of the node written last; the next goes below it
   std::uint64_t leaf_count_ = 0;
-  std::uint32_t code_ = 0;  ///< of the leaf before
+  std::uint32_t code_ = 0;         ///< of the leaf before
   std::uint64_t planes_free_ = 0;  ///< cycle in which the search can begin another
   std::size_t reason_ = 0;
   std::array<std::uint8_t, kMaxBeatBytes> line_{};

@@ -33,11 +33,11 @@ class RecordReader {
  private:
   struct Line {
     std::array<std::uint8_t, kMaxBeatBytes * 4> bytes{};
-    std::uint32_t offset = 0;   ///< of the first record
-    std::uint32_t held = 0;     ///< bytes
-    std::uint32_t wanted = 0;   ///< bytes, 0: no line is being gathered
+    std::uint32_t offset = 0;  ///< of the first record
+    std::uint32_t held = 0;    ///< bytes
+    std::uint32_t wanted = 0;  ///< bytes, 0: no line is being gathered
     std::uint32_t records = 0;
-    std::uint32_t next = 0;     ///< record to hand out
+    std::uint32_t next = 0;  ///< record to hand out
   };
   void request();
   void gather();
@@ -72,8 +72,8 @@ class RecordReader {
   std::uint32_t data_next_ = 0;
   std::uint32_t data_line_ = 0;
   std::uint32_t hand_left_ = 0;  ///< records of the first task not yet handed out
-  Line line_;      ///< being handed out
-  Line incoming_;  ///< being gathered
+  Line line_;                    ///< being handed out
+  Line incoming_;                ///< being gathered
 };
 
 }  // namespace fasttree::model::ft2

@@ -30,8 +30,9 @@ struct Layout {
 struct Faults {
   static constexpr std::uint64_t kNone = ~std::uint64_t{0};
   std::uint64_t drop_record = kNone;  ///< this record of the first partition never reaches a bucket
-  std::uint64_t wrong_link = kNone;   ///< this link between chunks names the chunk after the right one
-  std::uint64_t lost_beat = kNone;    ///< the scene's reader never asks for this access
+  std::uint64_t wrong_link =
+      kNone;  ///< this link between chunks names the chunk after the right one
+  std::uint64_t lost_beat = kNone;  ///< the scene's reader never asks for this access
 };
 
 struct Registers {
@@ -39,8 +40,8 @@ struct Registers {
   Layout layout;
   Faults faults;
   std::uint32_t triangles = 0;
-  CellLevels levels;     ///< from the bounds and D
-  int bucket_bits = 0;   ///< of the first partition
+  CellLevels levels;    ///< from the bounds and D
+  int bucket_bits = 0;  ///< of the first partition
   RecordFormat records;
   ChunkFormat chunks;
   std::uint64_t references = 0;  ///< M, counted while generating

@@ -31,8 +31,8 @@ void SceneReader::tick() {
   if (done()) return idle();
   // One request a cycle keeps ahead of any memory it was sized for.
   if (requested_ < bytes_ && port_.ready()) {
-    const auto bytes =
-        static_cast<std::uint32_t>(std::min<std::uint64_t>(port_.beat_bytes(), bytes_ - requested_));
+    const auto bytes = static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(port_.beat_bytes(), bytes_ - requested_));
     if (beats_requested_++ != r_.faults.lost_beat) {
       port_.request(r_.layout.scene + Address(requested_), bytes);
     }
