@@ -63,18 +63,19 @@ Dma::Dma(Memory& memory, ByteStore& store, std::uint64_t clock_period_ps)
 
 ReadPort& Dma::add_read(const std::string& purpose, std::uint32_t buffer_bytes) {
   reads_.push_back(std::make_unique<ReadPort>(purpose, buffer_bytes, beat_bytes_));
+  all_.push_back({reads_.back().get(), reads_.back().get(), nullptr});
   return *reads_.back();
 }
 
 WritePort& Dma::add_write(const std::string& purpose, std::uint32_t buffer_bytes) {
   writes_.push_back(std::make_unique<WritePort>(purpose, buffer_bytes, beat_bytes_));
+  all_.push_back({writes_.back().get(), nullptr, writes_.back().get()});
   return *writes_.back();
 }
 
 bool Dma::issue(std::size_t port) {
-  const bool write = port >= reads_.size();
-  Port& p = write ? static_cast<Port&>(*writes_[port - reads_.size()]) : *reads_[port];
-  if (!p.pending()) return false;
+  Port& p = *all_[port].port;
+  const bool write = all_[port].write != nullptr;
   const std::size_t slot = p.wrap(p.head_ + p.issued_);
   Beat& beat = p.ring_[slot];
   if (!memory_.ready(beat.address, write)) return false;
@@ -102,25 +103,24 @@ void Dma::tick() {
   MemoryCompletion completion;
   while (memory_.take(completion)) {
     moved = true;
-    if (!completion.write)
-      reads_[completion.tag >> 16]->ring_[completion.tag & 0xffff].arrived = true;
+    if (completion.write) continue;
+    all_[completion.tag >> 16].read->ring_[completion.tag & 0xffff].arrived = true;
   }
-  const std::size_t ports = reads_.size() + writes_.size();
+  const std::size_t ports = all_.size();
   std::uint32_t budget = channels_;
   bool waiting = false;
-  std::size_t port = next_port_;
-  for (std::size_t i = 0; i < ports && budget > 0; ++i) {
-    if (issue(port)) {
-      --budget;
-      moved = true;
-      next_port_ = port + 1 == ports ? 0 : port + 1;
-    } else {
-      const Port& p = port >= reads_.size()
-                          ? static_cast<const Port&>(*writes_[port - reads_.size()])
-                          : *reads_[port];
-      waiting |= p.pending();
+  for (std::size_t i = 0, port = next_port_; i < ports && budget > 0; ++i) {
+    const std::size_t after = port + 1 == ports ? 0 : port + 1;
+    if (all_[port].port->pending()) {
+      if (issue(port)) {
+        --budget;
+        moved = true;
+        next_port_ = after;
+      } else {
+        waiting = true;
+      }
     }
-    port = port + 1 == ports ? 0 : port + 1;
+    port = after;
   }
   for (auto& w : writes_) w->written_this_cycle_ = false;
   if (moved) {

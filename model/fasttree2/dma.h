@@ -109,6 +109,12 @@ class Dma : public Unit {
   std::uint64_t cycle() const { return cycle_; }
 
  private:
+  /// A port, as what it is: in the order in which they are served, and whose place is in the tag.
+  struct Any {
+    Port* port = nullptr;
+    ReadPort* read = nullptr;
+    WritePort* write = nullptr;
+  };
   bool issue(std::size_t port);
 
   Memory& memory_;
@@ -118,6 +124,7 @@ class Dma : public Unit {
   std::uint32_t channels_;
   std::vector<std::unique_ptr<ReadPort>> reads_;
   std::vector<std::unique_ptr<WritePort>> writes_;
+  std::vector<Any> all_;
   std::size_t next_port_ = 0;
   std::uint64_t cycle_ = 0;
   std::uint64_t moved_bytes_ = 0;
