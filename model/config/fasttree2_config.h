@@ -32,18 +32,18 @@ struct FastTree2Config {
   std::uint32_t free_chunks = 32;
   // Second partition.
   std::uint32_t sub_buckets = 32;
-  std::uint32_t ready_buckets = 16;
+  std::uint32_t ready_buckets = 24;
   // Lanes.
   std::uint32_t lanes = 3;
   std::uint32_t lane_records = 1024;
-  std::uint32_t lane_references = 2432;
+  std::uint32_t lane_references = 2560;
   std::uint32_t lane_cells = 512;
   std::uint32_t place_width = 8;
   std::uint32_t stream_ids = 4;
   std::uint32_t leaf_queue = 8;
   // Nodes.
   std::uint32_t nodes_per_cycle = 2;
-  std::uint32_t plane_cache = 32;
+  std::uint32_t plane_cache = 64;
   // Ports to memory.
   std::uint32_t scene_prefetch_bytes = 2048;
   std::uint32_t record_prefetch_bytes = 1024;

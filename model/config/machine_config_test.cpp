@@ -105,7 +105,7 @@ TEST(MachineConfig, Overrides) {
   refused("memory.cl_clocks=900", {"out of range", "1 to 255"});
   refused("memory.cl_clock=9", {"did you mean 'cl_clocks'"});
   refused("mem.cl_clocks=9", {"unknown section 'mem'"});
-  refused("fasttree2.bus_bytes_per_cycle=8", {"is of architecture 'fasttree-2'"});
+  refused("fasttree2.lanes=8", {"is of architecture 'fasttree-2'"});
   EXPECT_EQ(to_toml(config), before);
 }
 

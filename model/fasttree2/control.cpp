@@ -191,7 +191,8 @@ Status Machine::morton_code(const Box3& bounds, bool check, bool& right) {
     }
   }
   right = !check || (!abandoned && bound_.bounds() == bounds);
-  while (!dma_.done()) {
+  // What an abandoned pass has left in the queues is dropped there.
+  while (!dma_.done() || !to_codes_.empty() || !to_first_.empty()) {
     if (Status s = cycle(0.7); !s.ok()) return s;
   }
   r_.references = codes_.references();

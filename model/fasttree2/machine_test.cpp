@@ -149,6 +149,25 @@ RC_GTEST_PROP(FastTree2, WrongBoundsAreNoticedAndGenerationIsRedone, ()) {
   RC_ASSERT(figures.generations == 2u);
 }
 
+TEST(FastTree2, APassThatIsAbandonedAtItsEndLeavesNothingBehind) {
+  // It looks at the bounds every 64 triangles.
+  const test::OwnedMesh mesh = test::soup(64, 5, 0.2f);
+  for (const std::uint32_t depth : {1u, 2u, 4u, 64u}) {
+    FastTree2Config config;
+    config.bounds_given = true;
+    config.queue_depth = depth;
+    config.quantisers = 1;
+    Extras extras;
+    extras.given_bounds = Box3{{-2, -2, -2}, {-2, -2, -2}};
+    Figures figures;
+    TestMemory::Shape fast;
+    fast.latency_ps = 0;
+    fast.gap_ps = 0;
+    EXPECT_EQ(difference(mesh.view(), config, fast, extras, &figures), "");
+    EXPECT_EQ(figures.generations, 2u);
+  }
+}
+
 TEST(FastTree2, RightBoundsSaveAPassOverTheScene) {
   const test::OwnedMesh mesh = test::soup(3000, 7, 0.05f);
   FastTree2Config config;
