@@ -4,34 +4,45 @@
 
 #include <cassert>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
+#include <memory>
+#include <new>
 #include <span>
-#include <vector>
 
 #include "model/kernel/quantities.h"
 
 namespace fasttree::model {
 
-/// Flat, little-endian as the host. Sized once, before a run.
+/// Flat, little-endian as the host, zero at first. Sized once, before a run; pages that are never
+/// touched take no memory.
 class ByteStore {
  public:
-  explicit ByteStore(std::uint64_t bytes) : bytes_(bytes) {}
+  explicit ByteStore(std::uint64_t bytes)
+      : bytes_(static_cast<std::uint8_t*>(std::calloc(bytes, 1))), size_(bytes) {
+    if (bytes_ == nullptr && bytes > 0) throw std::bad_alloc();
+  }
 
-  std::uint64_t size() const { return bytes_.size(); }
+  std::uint64_t size() const { return size_; }
   void read(Address from, void* to, std::size_t count) const {
-    assert(from.value + count <= bytes_.size());
-    std::memcpy(to, bytes_.data() + from.value, count);
+    assert(from.value + count <= size_);
+    std::memcpy(to, bytes_.get() + from.value, count);
   }
   void write(Address to, const void* from, std::size_t count) {
-    assert(to.value + count <= bytes_.size());
-    std::memcpy(bytes_.data() + to.value, from, count);
+    assert(to.value + count <= size_);
+    std::memcpy(bytes_.get() + to.value, from, count);
   }
   std::span<const std::uint8_t> view(Address from, std::size_t count) const {
-    return std::span(bytes_).subspan(from.value, count);
+    assert(from.value + count <= size_);
+    return {bytes_.get() + from.value, count};
   }
 
  private:
-  std::vector<std::uint8_t> bytes_;
+  struct Free {
+    void operator()(void* p) const { std::free(p); }
+  };
+  std::unique_ptr<std::uint8_t[], Free> bytes_;
+  std::uint64_t size_;
 };
 
 }  // namespace fasttree::model
