@@ -43,6 +43,11 @@ class Queue {
     ++popped_;
     return value;
   }
+  /// Takes the front where front() has been enough.
+  void drop() {
+    assert(valid());
+    ++popped_;
+  }
 
   /// The rising edge: pushes become visible, and popped slots free.
   void clock() {

@@ -54,6 +54,8 @@ class Unit {
     by_stage_.emplace_back();
     by_stage_.back().stalled_cycles.resize(stall_reasons_.size());
   }
+  /// Cycles of a stage in which the unit was not ticked because the stage does not use it.
+  void rest(std::uint64_t cycles) { by_stage_.back().idle_cycles += cycles; }
   /// One entry a begin_stage(); the first is before any stage.
   const std::vector<Activity>& activity() const { return by_stage_; }
 

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// Radix sort unit (RSU): control of the rounds of counting sort over the prefix sum units. A
+// section is fetched, its flags are scanned digit by digit, then its pairs move to their places.
+// Docs: docs/accelerator/radix_sort.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/config/paper_config.h"
+#include "model/kernel/unit.h"
+#include "model/system/stream.h"
+#include "model/units/prefix_sum.h"
+
+namespace fasttree::model {
+
+/// Where a round reads and writes.
+struct SortRound {
+  std::uint32_t number = 0;
+  bool last = false;  ///< codes and ids go to arrays of their own
+  std::uint64_t pairs = 0;
+  Address from;
+  Address to;      ///< pairs, or the codes in the last round
+  Address to_ids;  ///< in the last round
+};
+
+class RadixSortUnit : public Unit {
+ public:
+  RadixSortUnit(const PaperConfig& config, BusPort& port, std::vector<PrefixSumUnit*> psus);
+
+  /// `counts`: how often each digit of this round occurs; made here where the configuration has a
+  /// pass for it.
+  void start(const SortRound& round, const std::vector<std::uint32_t>& counts);
+
+  void tick() override;
+  bool done() const override { return state_ == State::done; }
+  std::string waits_for() const override;
+
+  /// Of the next round's digit, after a round.
+  const std::vector<std::uint32_t>& next_counts() const { return next_counts_; }
+
+ private:
+  enum class State { count, offsets, move, flush, done };
+  enum class Work { none, scan, scatter };
+  struct Buffer {
+    std::vector<std::uint8_t> raw;
+    std::vector<std::uint32_t> code, id, place;
+    std::vector<std::uint16_t> digit;  ///< of this round; no digit behind the last pair
+    std::uint32_t bytes = 0;           ///< fetched
+    std::uint32_t want = 0;            ///< bytes of the section; 0: none being fetched
+    std::uint32_t count = 0;
+  };
+
+  bool count_pass();
+  bool offsets();
+  bool fetch();
+  void begin_fetch(Buffer& buffer);
+  void unpack(Buffer& buffer);
+  bool scan();
+  void send_flags();
+  void collect_sums();
+  bool scatter();
+  bool place(const Buffer& buffer, std::uint32_t i);
+  bool put(BlockWriter& writer, Address at, Purpose purpose, const void* bytes, std::uint32_t size);
+  bool flush();
+  std::uint32_t digit(std::uint32_t code, std::uint32_t round) const {
+    return static_cast<std::uint32_t>(
+        std::uint64_t{code} >> (round * config_.radix_sort.radix_bits) & (radix_ - 1));
+  }
+
+  PaperConfig config_;
+  std::uint32_t radix_;
+  std::uint32_t pair_size_;
+  std::uint32_t capacity_;  ///< pairs of a section over all units
+  BusPort& port_;
+  StreamReader reader_;
+  std::vector<PrefixSumUnit*> psus_;
+  State state_ = State::done;
+  SortRound round_;
+  std::vector<std::uint32_t> counts_, next_counts_;
+  std::vector<std::uint32_t> begin_;  ///< a digit: where its next pair goes
+  std::uint32_t offset_section_ = 0;  ///< of the counts, being summed
+  bool offset_asked_ = false;
+  std::uint32_t offset_ = 0;
+  std::array<std::uint8_t, 2 * kMaxRequestBytes> partial_{};  ///< count pass: bytes of pairs
+  std::uint32_t partial_bytes_ = 0;
+  std::array<Buffer, 2> buffers_;
+  std::uint32_t loading_ = 0, working_ = 0;
+  Work work_ = Work::none;
+  std::uint32_t asked_digits_ = 0, summed_digits_ = 0;
+  std::uint32_t next_pair_ = 0;
+  std::uint64_t fetched_pairs_ = 0;
+  std::vector<BlockWriter> writers_;     ///< a digit
+  std::vector<BlockWriter> id_writers_;  ///< a digit, last round
+  std::uint32_t next_flush_ = 0;
+  std::size_t waits_ = 0;
+};
+
+}  // namespace fasttree::model
