@@ -39,10 +39,13 @@ Fields<ControllerConfig> controller_fields() {
   Fields<C> f;
   f.choice("interleave", &C::interleave, {"burst", "row"},
            "Channels change with every burst, or every row_interleave_bytes");
-  f.power_of_two("row_interleave_bytes", &C::row_interleave_bytes, 32, 1 << 30,
-                 "Block of one channel under interleave = \"row\"");
+  f.power_of_two(
+      "row_interleave_bytes", &C::row_interleave_bytes, 32, 1 << 30,
+      "Block of one channel under interleave = \"row\": at the start, a row of each bank");
   f.choice("address_order", &C::address_order, {"row_bank_column", "bank_row_column"},
            "From the highest address bits to the lowest, inside a channel");
+  f.flag("bank_hash", &C::bank_hash,
+         "Bank exclusive-or row, so that arrays a power of two apart do not share banks");
   f.count("read_queue", &C::read_queue, 1, 64, "Reads that wait in a channel");
   f.count("write_queue", &C::write_queue, 1, 64, "Writes that wait in a channel");
   f.count("write_drain_high", &C::write_drain_high, 1, 64,

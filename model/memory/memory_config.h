@@ -57,12 +57,13 @@ struct DramSpec {
 /// How the controller uses the device.
 struct ControllerConfig {
   Interleave interleave = Interleave::burst;
-  std::uint32_t row_interleave_bytes = 4096;
+  std::uint32_t row_interleave_bytes = 32768;
   AddressOrder address_order = AddressOrder::row_bank_column;
+  bool bank_hash = true;
   std::uint32_t read_queue = 32;
-  std::uint32_t write_queue = 32;
-  std::uint32_t write_drain_high = 28;
-  std::uint32_t write_drain_low = 4;
+  std::uint32_t write_queue = 64;
+  std::uint32_t write_drain_high = 48;
+  std::uint32_t write_drain_low = 8;
   std::uint32_t write_idle_clocks = 16;
   std::uint32_t starvation_clocks = 1000;
   RefreshPolicy refresh = RefreshPolicy::per_bank;
