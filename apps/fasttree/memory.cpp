@@ -10,6 +10,7 @@
 
 #include "command.h"
 #include "figures.h"
+#include "inputs.h"
 #include "model/config/machine_config.h"
 #include "model/memory/command_checker.h"
 #include "model/memory/command_trace.h"
