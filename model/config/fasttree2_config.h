@@ -36,17 +36,18 @@ struct FastTree2Config {
   // Lanes.
   std::uint32_t lanes = 3;
   std::uint32_t lane_records = 1024;
-  std::uint32_t lane_references = 3072;
-  std::uint32_t lane_cells = 1024;
-  std::uint32_t place_width = 4;
-  std::uint32_t stream_ids = 2;
+  std::uint32_t lane_references = 2432;
+  std::uint32_t lane_cells = 512;
+  std::uint32_t place_width = 8;
+  std::uint32_t stream_ids = 4;
   std::uint32_t leaf_queue = 8;
   // Nodes.
+  std::uint32_t nodes_per_cycle = 2;
   std::uint32_t plane_cache = 32;
   // Ports to memory.
   std::uint32_t scene_prefetch_bytes = 2048;
   std::uint32_t record_prefetch_bytes = 1024;
-  std::uint32_t write_buffer_bytes = 512;
+  std::uint32_t write_buffer_bytes = 256;
   // A run.
   std::uint64_t stuck_cycles = 100'000;
 
@@ -82,6 +83,7 @@ struct FastTree2Config {
             "References a lane places in a cycle, each in a bank of its own");
     f.count("stream_ids", &C::stream_ids, 1, 8, "Ids a lane streams out in a cycle");
     f.count("leaf_queue", &C::leaf_queue, 1, 64, "Leaves between a lane and the node emitter");
+    f.count("nodes_per_cycle", &C::nodes_per_cycle, 1, 4, "Nodes written in a cycle");
     f.power_of_two("plane_cache", &C::plane_cache, 1, 4096, "Split planes kept for each axis");
     f.count("scene_prefetch_bytes", &C::scene_prefetch_bytes, 32, 65536,
             "Prefetch buffer of the scene's reader");
