@@ -78,5 +78,6 @@ std::unique_ptr<Command> make_render_command();
 std::unique_ptr<Command> make_compare_command();
 std::unique_ptr<Command> make_animate_command();
 std::unique_ptr<Command> make_view_command();
+std::unique_ptr<Command> make_memory_command();
 
 }  // namespace fasttree::app

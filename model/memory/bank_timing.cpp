@@ -19,28 +19,6 @@ bool BankTiming::any_open() const {
                      [](const Bank& bank) { return bank.open; });
 }
 
-std::uint64_t BankTiming::earliest(DramCommandKind kind, std::uint32_t b) const {
-  const Bank& bank = banks_[b];
-  switch (kind) {
-    case DramCommandKind::activate:
-      return std::max({bank.activate, activate_, window_[window_next_], command_});
-    case DramCommandKind::precharge:
-      return std::max(bank.precharge, command_);
-    case DramCommandKind::read:
-      return std::max({bank.column, read_, command_});
-    case DramCommandKind::write:
-      return std::max({bank.column, write_, command_});
-    case DramCommandKind::refresh_bank:
-      return std::max({bank.activate, activate_, refresh_, command_});
-    case DramCommandKind::refresh_all: {
-      std::uint64_t clock = std::max(refresh_, command_);
-      for (std::uint32_t i = 0; i < spec_.banks; ++i) clock = std::max(clock, banks_[i].activate);
-      return clock;
-    }
-  }
-  return 0;
-}
-
 void BankTiming::issue(DramCommandKind kind, std::uint32_t b, std::uint32_t row,
                        std::uint64_t clock) {
   Bank& bank = banks_[b];

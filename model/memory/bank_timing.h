@@ -4,6 +4,7 @@
 // clocks of those it holds up; asking is then a maximum of few numbers.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -51,5 +52,27 @@ class BankTiming {
   std::array<std::uint64_t, 4> window_{};
   std::uint32_t window_next_ = 0;
 };
+
+inline std::uint64_t BankTiming::earliest(DramCommandKind kind, std::uint32_t b) const {
+  const Bank& bank = banks_[b];
+  switch (kind) {
+    case DramCommandKind::activate:
+      return std::max({bank.activate, activate_, window_[window_next_], command_});
+    case DramCommandKind::precharge:
+      return std::max(bank.precharge, command_);
+    case DramCommandKind::read:
+      return std::max({bank.column, read_, command_});
+    case DramCommandKind::write:
+      return std::max({bank.column, write_, command_});
+    case DramCommandKind::refresh_bank:
+      return std::max({bank.activate, activate_, refresh_, command_});
+    case DramCommandKind::refresh_all: {
+      std::uint64_t clock = std::max(refresh_, command_);
+      for (std::uint32_t i = 0; i < spec_.banks; ++i) clock = std::max(clock, banks_[i].activate);
+      return clock;
+    }
+  }
+  return 0;
+}
 
 }  // namespace fasttree::model

@@ -69,36 +69,44 @@ void DramChannel::accept(const MemoryRequest& request, const DramLocation& at, P
   next_ = std::min(next_, queued.arrival);
 }
 
-bool DramChannel::starving(const RequestQueue& queue, std::uint64_t clock) const {
+/// From which clock on the oldest request of a queue is no more overtaken.
+std::uint64_t DramChannel::starves_at(const RequestQueue& queue) const {
   const Slot oldest = queue.oldest();
-  return oldest != kNoSlot && queue[oldest].waits_for == kNoSlot &&
-         queue[oldest].arrival + config_.starvation_clocks <= clock;
+  if (oldest == kNoSlot || queue[oldest].waits_for != kNoSlot) return kNever;
+  return queue[oldest].arrival + config_.starvation_clocks;
 }
 
 /// Reading or writing. Gives the clock at which that may change by time alone.
 std::uint64_t DramChannel::choose_direction(std::uint64_t clock) {
   const bool reads = reads_.eligible() > 0;
   const bool writes = writes_.eligible() > 0;
+  if (!writes) writing_ = false;
+  if (!reads && writing_) return kNever;
+  if (!writes) return kNever;
+
   const bool read_needs_write = reads_.eligible() < reads_.count();
   const bool many = writes_.count() >= config_.write_drain_high;
-  std::uint64_t change = kNever;
-  if (!writing_ && writes) {
-    const std::uint64_t idle_over = last_read_ + config_.write_idle_clocks;
-    if (!reads) {
-      writing_ = many || read_needs_write || idle_over <= clock;
-      in_no_hurry_ = writing_ && !many && !read_needs_write;
-      if (!writing_) change = idle_over;
-    } else if (!starving(reads_, clock)) {
-      writing_ = many || read_needs_write || starving(writes_, clock);
-      in_no_hurry_ = false;
-    }
-  } else if (writing_) {
+  const std::uint64_t reads_starve = starves_at(reads_);
+  const std::uint64_t writes_starve = starves_at(writes_);
+  // Where both sides have waited too long, the older goes first.
+  const bool reads_first = reads_starve <= clock && reads_starve <= writes_starve;
+  if (writing_) {
     const bool few = writes_.count() <= config_.write_drain_low || (in_no_hurry_ && !many);
-    const bool back = reads && (starving(reads_, clock) ||
-                                (few && !read_needs_write && !starving(writes_, clock)));
-    if (!writes || back) writing_ = false;
+    const bool may_stop = few && !read_needs_write && writes_starve > clock;
+    if (reads_first || may_stop) writing_ = false;
+    return writing_ && reads_starve > clock ? reads_starve : kNever;
   }
-  return change;
+  if (reads) {
+    const bool must_write = many || read_needs_write || writes_starve <= clock;
+    writing_ = must_write && !reads_first;
+    in_no_hurry_ = false;
+    return !must_write && writes_starve > clock ? writes_starve : kNever;
+  }
+  const std::uint64_t idle_over = last_read_ + config_.write_idle_clocks;
+  const bool must_write = many || read_needs_write;
+  writing_ = must_write || idle_over <= clock;
+  in_no_hurry_ = !must_write;
+  return writing_ ? kNever : idle_over;
 }
 
 void DramChannel::consider_refresh(Choice& choice, std::uint64_t clock) const {
@@ -125,15 +133,18 @@ void DramChannel::consider_refresh(Choice& choice, std::uint64_t clock) const {
                clock);
 }
 
-const DramChannel::Candidates& DramChannel::candidates(std::uint32_t bank) {
+DramChannel::Candidates& DramChannel::candidates(std::uint32_t bank) {
   Candidates& found = candidates_[bank + (writing_ ? BankTiming::kMaxBanks : 0)];
   if (found.known) return found;
   const RequestQueue& queue = writing_ ? writes_ : reads_;
   const bool open = timing_.is_open(bank);
-  found = {true, kNoSlot, kNoSlot};
+  found = {true, kNoSlot, kNoSlot, 0, 0};
   for (Slot slot = queue.first(bank); slot != kNoSlot; slot = queue[slot].next) {
     if (queue[slot].waits_for != kNoSlot) continue;
-    if (found.oldest == kNoSlot) found.oldest = slot;
+    if (found.oldest == kNoSlot) {
+      found.oldest = slot;
+      found.starves_at = queue[slot].arrival + config_.starvation_clocks;
+    }
     if (!open) break;
     if (queue[slot].at.row == timing_.open_row(bank)) {
       found.hit = slot;
@@ -146,22 +157,28 @@ const DramChannel::Candidates& DramChannel::candidates(std::uint32_t bank) {
 /// Offers the command that the requests of this bank want most.
 void DramChannel::consider_bank(Choice& choice, std::uint32_t bank, std::uint64_t clock) {
   const RequestQueue& queue = writing_ ? writes_ : reads_;
-  const auto [known, oldest, hit] = candidates(bank);
-  if (oldest == kNoSlot) return;
-  const bool starving = queue[oldest].arrival + config_.starvation_clocks <= clock;
+  Candidates& found = candidates(bank);
+  if (found.oldest == kNoSlot) return;
+  const bool starving = found.starves_at <= clock;
   if (!starving) {
-    choice.soonest = std::min(choice.soonest, queue[oldest].arrival + config_.starvation_clocks);
+    choice.soonest = std::min(choice.soonest, found.starves_at);
+    if (found.not_before > clock) {
+      choice.soonest = std::min(choice.soonest, found.not_before);
+      return;
+    }
   }
-  if (hit != kNoSlot && (hit == oldest || !starving)) {
+  if (found.hit != kNoSlot && (found.hit == found.oldest || !starving)) {
     const DramCommandKind kind = writing_ ? DramCommandKind::write : DramCommandKind::read;
-    choice.offer(starving ? kStarving : kColumn, queue[hit].order, kind, bank, hit,
-                 timing_.earliest(kind, bank), clock);
+    found.not_before = timing_.earliest(kind, bank);
+    choice.offer(starving ? kStarving : kColumn, queue[found.hit].order, kind, bank, found.hit,
+                 found.not_before, clock);
     return;
   }
   const DramCommandKind kind =
       timing_.is_open(bank) ? DramCommandKind::precharge : DramCommandKind::activate;
-  choice.offer(starving ? kStarving : kRow, queue[oldest].order, kind, bank, oldest,
-               timing_.earliest(kind, bank), clock);
+  found.not_before = timing_.earliest(kind, bank);
+  choice.offer(starving ? kStarving : kRow, queue[found.oldest].order, kind, bank, found.oldest,
+               found.not_before, clock);
 }
 
 std::uint64_t DramChannel::step(std::uint64_t clock) {

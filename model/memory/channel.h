@@ -47,15 +47,18 @@ class DramChannel {
     bool known = false;
     Slot oldest = kNoSlot;
     Slot hit = kNoSlot;
+    std::uint64_t starves_at = 0;  ///< clock from which the oldest is no more overtaken
+    /// Nothing can go out before; deadlines only move away, so it stays true.
+    std::uint64_t not_before = 0;
   };
 
   /// One clock: issues at most one command; gives the next clock at which there may be work.
   std::uint64_t step(std::uint64_t clock);
   std::uint64_t choose_direction(std::uint64_t clock);
-  bool starving(const RequestQueue& queue, std::uint64_t clock) const;
+  std::uint64_t starves_at(const RequestQueue& queue) const;
   void consider_refresh(Choice& choice, std::uint64_t clock) const;
   void consider_bank(Choice& choice, std::uint32_t bank, std::uint64_t clock);
-  const Candidates& candidates(std::uint32_t bank);
+  Candidates& candidates(std::uint32_t bank);
   void carry_out(const Choice& choice, std::uint64_t clock);
   void finish(Slot slot, std::uint64_t clock);
   void forget(std::uint32_t bank, bool write) {
