@@ -13,6 +13,7 @@
 #include "fasttree/tree_file.h"
 #include "grid/grid.h"
 #include "inputs.h"
+#include "model/config/machine_config.h"
 #include "options.h"
 #include "oracle/embree_oracle.h"
 #include "output.h"
@@ -80,11 +81,16 @@ class InfoCommand : public Command {
   void declare(Options& options) override {
     options.positional(input_, "SCENE|TREE", "A scene or a tree file", false);
     options.flag(list_, "--list", "List the procedural scenes");
+    options.text(config_, "--config", "NAME|FILE", "Print a machine's configuration as TOML");
   }
 
   int run(Context& context) override {
     ordered_json json = json_of_program();
-    if (list_) {
+    if (!config_.empty()) {
+      const std::string toml = model::to_toml(take(model::load_config(config_)));
+      context.output.line("{}", std::string_view(toml).substr(0, toml.size() - 1));
+      json["config"] = toml;
+    } else if (list_) {
       list_scenes(context.output, json);
     } else if (input_.empty()) {
       describe_program(context, json);
@@ -215,6 +221,7 @@ class InfoCommand : public Command {
   }
 
   std::string input_;
+  std::string config_;
   bool list_ = false;
 };
 

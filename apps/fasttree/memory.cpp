@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "command.h"
-#include "figures.h"
+#include "inputs.h"
 #include "model/config/machine_config.h"
 #include "model/memory/command_checker.h"
 #include "model/memory/command_trace.h"

@@ -42,6 +42,7 @@ struct FastTree2Config {
   std::uint32_t stream_ids = 2;
   std::uint32_t leaf_queue = 8;
   // Nodes.
+  std::uint32_t nodes_per_cycle = 2;
   std::uint32_t plane_cache = 32;
   // Ports to memory.
   std::uint32_t scene_prefetch_bytes = 2048;
@@ -82,6 +83,7 @@ struct FastTree2Config {
             "References a lane places in a cycle, each in a bank of its own");
     f.count("stream_ids", &C::stream_ids, 1, 8, "Ids a lane streams out in a cycle");
     f.count("leaf_queue", &C::leaf_queue, 1, 64, "Leaves between a lane and the node emitter");
+    f.count("nodes_per_cycle", &C::nodes_per_cycle, 1, 4, "Nodes written in a cycle");
     f.power_of_two("plane_cache", &C::plane_cache, 1, 4096, "Split planes kept for each axis");
     f.count("scene_prefetch_bytes", &C::scene_prefetch_bytes, 32, 65536,
             "Prefetch buffer of the scene's reader");

@@ -25,6 +25,8 @@ BucketLane::BucketLane(std::string name, Registers& registers, Dma& dma, ChunkPo
       placed_(registers.config.lane_references) {
   front_.counters.resize(registers.config.lane_cells);
   back_.counters.resize(registers.config.lane_cells);
+  front_.used.resize(registers.config.lane_cells / kBlockCells);
+  back_.used.resize(registers.config.lane_cells / kBlockCells);
 }
 
 bool BucketLane::can_accept() const {
@@ -88,7 +90,7 @@ bool BucketLane::count() {
   if (!front_walk_.active()) {
     if (front_.loaded == front_.task.chain.count) {
       front_state_ = Front::prefix;
-      front_word_ = 0;
+      front_word_ = front_.used.from(0);
       front_sum_ = 0;
       return sum_prefixes();
     }
@@ -114,16 +116,23 @@ bool BucketLane::count() {
   for (std::uint32_t mask = front_walk_.mask(); mask != 0; mask &= mask - 1) {
     ++word[std::countr_zero(mask)];
   }
+  front_.used.insert(front_walk_.word());
   front_.total += static_cast<std::uint32_t>(std::popcount(front_walk_.mask()));
   front_walk_.next();
   return true;
 }
 
 bool BucketLane::sum_prefixes() {
+  if (front_word_ == WordSet::kNone) {
+    r_.fail(name() + ": a bucket without references");  // only where the records were not ours
+    return false;
+  }
   std::uint32_t* word = front_.counters.data() + front_word_ * kBlockCells;
-  for (std::uint32_t c = 0; c < kBlockCells; ++c)
+  for (std::uint32_t c = 0; c < kBlockCells; ++c) {
     word[c] = std::exchange(front_sum_, front_sum_ + word[c]);
-  if (++front_word_ == front_.words) front_state_ = Front::ready;
+  }
+  front_word_ = front_.used.from(front_word_ + 1);
+  if (front_word_ == WordSet::kNone) front_state_ = Front::ready;
   return true;
 }
 
@@ -152,7 +161,8 @@ void BucketLane::begin_back() {
   streamed_ = 0;
   line_fill_ = 0;
   leaves_done_ = false;
-  leaf_cell_ = back_.words * kBlockCells;
+  leaf_word_ = passes(back_) ? WordSet::kNone : back_.used.below(back_.words);
+  leaf_cell_ = kBlockCells;
   back_state_ = passes(back_) ? Back::pass : Back::place;
 }
 
@@ -196,7 +206,8 @@ bool BucketLane::rewind() {
   // Counters hold the ends of cells; the end of one is the start of the next.
   std::uint32_t* word = back_.counters.data() + back_word_ * kBlockCells;
   for (std::uint32_t c = 0; c < kBlockCells; ++c) word[c] = std::exchange(back_end_, word[c]);
-  if (++back_word_ == back_.words) {
+  back_word_ = back_.used.from(back_word_ + 1);
+  if (back_word_ == WordSet::kNone) {
     back_state_ = Back::place;
     current_ = 0;
   }
@@ -227,7 +238,7 @@ void BucketLane::tick() {
   // A bucket takes its place among the ids as soon as its references are counted.
   if (back_state_ != Back::idle) take_index(back_);
   if (front_state_ == Front::prefix || front_state_ == Front::ready) {
-    if (front_.total > 0 && (front_state_ == Front::ready || front_word_ > 0)) take_index(front_);
+    take_index(front_);
   }
   if (front_worked || back_worked) {
     busy();

@@ -12,6 +12,7 @@
 #include "model/fasttree2/block_walk.h"
 #include "model/fasttree2/record_reader.h"
 #include "model/fasttree2/registers.h"
+#include "model/fasttree2/word_set.h"
 #include "model/kernel/queue.h"
 #include "model/kernel/unit.h"
 
@@ -72,6 +73,7 @@ class BucketLane : public Unit {
     bool index_taken = false;
     std::uint64_t first = 0;  ///< of its ids
     std::vector<std::uint32_t> counters;
+    WordSet used;  ///< words with a counter that is not zero
   };
 
   std::uint32_t slot(const Bucket& bucket, std::uint32_t record) const {
@@ -133,7 +135,8 @@ class BucketLane : public Unit {
   std::uint32_t line_fill_ = 0;  ///< bytes
   std::array<std::uint8_t, kMaxBeatBytes> line_{};
   bool leaves_done_ = false;
-  std::uint32_t leaf_cell_ = 0;  ///< one past the next cell to look at
+  std::uint32_t leaf_word_ = WordSet::kNone;  ///< that is gone over
+  std::uint32_t leaf_cell_ = 0;               ///< in it, one past the next cell to look at
 };
 
 }  // namespace fasttree::model::ft2

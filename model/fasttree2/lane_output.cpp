@@ -47,7 +47,7 @@ bool BucketLane::stream() {
   }
   if (streamed_ == end && end < back_.total) {
     window_ = end;
-    back_word_ = 0;
+    back_word_ = back_.used.from(0);
     back_end_ = 0;
     back_state_ = Back::rewind;
     return true;
@@ -55,7 +55,6 @@ bool BucketLane::stream() {
   // The last references are placed, so the counters hold the leaves' ends.
   if (end == back_.total && !leaves_done_) worked |= walk_leaves();
   if (streamed_ == back_.total && leaves_done_) {
-    std::fill_n(back_.counters.begin(), back_.words * kBlockCells, 0);  // behind the walk, by words
     end_back();
     return true;
   }
@@ -71,23 +70,27 @@ bool BucketLane::walk_leaves() {
     if (streamed_ == back_.total) back_reason_ = kNodes;
     return false;
   }
-  // The next cell downwards that is not empty, within one word: a priority encoder of eight.
-  const std::uint32_t stop = (leaf_cell_ - 1) / kBlockCells * kBlockCells;
-  while (leaf_cell_ > stop) {
-    const std::uint32_t cell = --leaf_cell_;
-    const std::uint32_t begin = cell == 0 ? 0 : back_.counters[cell - 1];
-    const std::uint32_t count = back_.counters[cell] - begin;
-    if (count == 0) continue;
-    const int cell_bits = r_.levels.depth() - back_.task.prefix_bits;
-    leaves_done_ = begin == 0;  // nothing lies below it
-    leaves_.push({back_.task.prefix << cell_bits | cell,
-                  static_cast<std::uint32_t>(back_.first + begin), count, leaves_done_});
-    return true;
-  }
-  if (leaf_cell_ == 0) {
-    // Only where the records were not ours.
-    r_.fail(name() + ": a bucket without references");
-    leaves_done_ = true;
+  // The next cell downwards that is not empty: a priority encoder of eight, for every word in use
+  // has one. Cells end where the next ones begin; the word below is read beside this one.
+  const std::uint32_t below = back_.used.below(leaf_word_);
+  std::uint32_t* word = back_.counters.data() + leaf_word_ * kBlockCells;
+  const std::uint32_t start =
+      below == WordSet::kNone ? 0 : back_.counters[below * kBlockCells + kBlockCells - 1];
+  const auto begin_of = [&](std::uint32_t c) { return c == 0 ? start : word[c - 1]; };
+  std::uint32_t cell = leaf_cell_ - 1;
+  while (cell > 0 && word[cell] == begin_of(cell)) --cell;
+  const std::uint32_t begin = begin_of(cell);
+  leaves_done_ = begin == 0;  // nothing lies below it
+  const int cell_bits = r_.levels.depth() - back_.task.prefix_bits;
+  leaves_.push({back_.task.prefix << cell_bits | (leaf_word_ * kBlockCells + cell),
+                static_cast<std::uint32_t>(back_.first + begin), word[cell] - begin, leaves_done_});
+  leaf_cell_ = cell;
+  if (begin == start) {
+    // The word is done with, and is cleared for the next bucket.
+    std::fill_n(word, kBlockCells, 0);
+    back_.used.erase(leaf_word_);
+    leaf_word_ = below;
+    leaf_cell_ = kBlockCells;
   }
   return true;
 }

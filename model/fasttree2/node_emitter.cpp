@@ -64,7 +64,9 @@ bool NodeEmitter::close() {
 }
 
 bool NodeEmitter::take_leaf(const LeafEntry& leaf) {
-  if (leaf_count_ > 0) {
+  if (leaf_count_ == 0) {
+    if (!put(Node::leaf(leaf.first, leaf.count))) return false;
+  } else {
     // The node between this leaf and the one before. Open nodes under it have both children now.
     const int m = std::bit_width(leaf.code ^ code_) - 1;
     if (open_count_ > 0 && open_[open_count_ - 1].m < m) return close();
@@ -85,12 +87,31 @@ bool NodeEmitter::take_leaf(const LeafEntry& leaf) {
     planes_free_ = r_.cycle + answer.cycles;
     open_[open_count_++] = {m, axis, answer.plane, static_cast<std::uint32_t>(next_ + 1),
                             r_.cycle + answer.cycles};
-  } else if (!put(Node::leaf(leaf.first, leaf.count))) {
-    return false;
   }
   code_ = leaf.code;
   ++leaf_count_;
   return true;
+}
+
+bool NodeEmitter::step() {
+  if (order_.next_leaves < order_.next_ticket) {
+    for (const auto& lane : lanes_) {
+      // Only the lane whose bucket is due has put leaves into its queue.
+      if (!lane->leaves().valid()) continue;
+      const std::uint64_t before = leaf_count_;
+      const bool worked = take_leaf(lane->leaves().front());
+      if (leaf_count_ != before && lane->leaves().pop().last_of_bucket) ++order_.next_leaves;
+      return worked;
+    }
+    reason_ = kLanes;
+    return false;
+  }
+  reason_ = kLanes;
+  if (!finishing_) return false;
+  if (open_count_ > 0) return close();
+  if (leaf_count_ > 0) return flush();
+  leaf_count_ = 1;
+  return put(Node::leaf(0, 0));  // an empty scene still has a root
 }
 
 bool NodeEmitter::flush() {
@@ -109,36 +130,9 @@ bool NodeEmitter::flush() {
 
 void NodeEmitter::tick() {
   if (!active_) return idle();
-  if (order_.next_leaves < order_.next_ticket) {
-    for (const auto& lane : lanes_) {
-      // Only the lane whose bucket is due has put leaves into its queue.
-      if (!lane->leaves().valid()) continue;
-      const LeafEntry leaf = lane->leaves().front();
-      const std::uint64_t before = leaf_count_;
-      const bool worked = take_leaf(leaf);
-      if (leaf_count_ != before) {
-        lane->leaves().pop();
-        if (leaf.last_of_bucket) ++order_.next_leaves;
-      }
-      return worked ? busy() : stalled(reason_);
-    }
-    reason_ = kLanes;
-    return stalled(reason_);
-  }
-  if (!finishing_) {
-    reason_ = kLanes;
-    return stalled(reason_);
-  }
-  bool worked = false;
-  if (open_count_ > 0) {
-    worked = close();
-  } else if (leaf_count_ == 0) {
-    worked = put(Node::leaf(0, 0));  // an empty scene still has a root
-    leaf_count_ = 1;
-  } else {
-    worked = flush();
-  }
-  worked ? busy() : stalled(reason_);
+  std::uint32_t steps = 0;
+  while (steps < r_.config.nodes_per_cycle && active_ && step()) ++steps;
+  steps > 0 ? busy() : stalled(reason_);
 }
 
 std::string NodeEmitter::waits_for() const {

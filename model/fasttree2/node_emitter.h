@@ -47,6 +47,8 @@ class NodeEmitter : public Unit {
   bool put(const Node& node);
   bool close();
   bool take_leaf(const LeafEntry& leaf);
+  /// One node: a leaf, or an inner node that is complete.
+  bool step();
   bool flush();
 
   Registers& r_;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/system/paper_machine.h"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
 #include "model/memory/byte_store.h"
+#include "model/memory/make_memory.h"
 #include "model/system/global_control.h"
 #include "model/system/host_interface.h"
 #include "model/system/memory_map.h"
@@ -166,6 +168,20 @@ Status validate(const PaperConfig& config) {
     return refuse("bus_read_ahead_bytes is less than a burst or two bus widths");
   }
   return {};
+}
+
+Result<SimulationResult> simulate_paper(const MeshView& mesh, const MachineConfig& config,
+                                        const SimulationOptions& options) {
+  if (Status status = validate(config.memory); !status.ok()) return status;
+  MachineConfig machine = config;
+  if (config.memory.kind == MemoryKind::dram) {
+    // The device may hold less than the plan is allowed.
+    const DramSpec& dram = config.memory.dram;
+    const auto mbytes = static_cast<std::uint32_t>((dram.channels * dram.channel_bytes()) >> 20);
+    machine.paper.control.memory_mbytes = std::min(machine.paper.control.memory_mbytes, mbytes);
+  }
+  const std::unique_ptr<Memory> memory = make_memory(config.memory);
+  return simulate_paper(mesh, machine, options, *memory);
 }
 
 Result<SimulationResult> simulate_paper(const MeshView& mesh, const MachineConfig& machine,

@@ -40,6 +40,15 @@ TEST(CliInfo, AFlatSceneHasADeadAxis) {
   EXPECT_EQ(json["scene"]["triangles"], 1);
 }
 
+TEST(CliInfo, PrintsAConfigurationThatIsOne) {
+  const Folder folder;
+  const RunResult printed = run({"info", "--config", "paper-fpga"});
+  EXPECT_EQ(printed.exit_code, 0);
+  write_file(folder.path("copy.toml"), printed.out);
+  EXPECT_EQ(run({"info", "--config", folder.path("copy.toml")}).out, printed.out);
+  EXPECT_EQ(run({"info", "--config", "paper-fgpa"}).exit_code, 3);
+}
+
 TEST(CliInfo, DescribesTheProgram) {
   const auto json = run_json({"info"});
   EXPECT_EQ(json["program"], "fasttree");
