@@ -37,9 +37,9 @@ struct FastTree2Config {
   std::uint32_t lanes = 3;
   std::uint32_t lane_records = 1024;
   std::uint32_t lane_references = 3072;
-  std::uint32_t lane_cells = 1024;
-  std::uint32_t place_width = 4;
-  std::uint32_t stream_ids = 2;
+  std::uint32_t lane_cells = 512;
+  std::uint32_t place_width = 8;
+  std::uint32_t stream_ids = 4;
   std::uint32_t leaf_queue = 8;
   // Nodes.
   std::uint32_t nodes_per_cycle = 2;

@@ -25,7 +25,11 @@ BucketWalker::BucketWalker(Registers& registers, Dma& dma, ChunkPool& pool,
 }
 
 std::size_t BucketWalker::stack_bound(const FastTree2Config& config) {
-  return std::size_t{kMaxDepth} * config.sub_buckets;
+  // A partition by b bits leaves at most 2^b - 1 buckets waiting while one is gone into; all the
+  // partitions above a bucket share the bits below the first. Few large ones leave the most.
+  const int bits = kMaxDepth - (std::bit_width(config.buckets) - 1);
+  const int most = std::bit_width(config.sub_buckets) - 1;
+  return static_cast<std::size_t>(bits / most) * ((1u << most) - 1) + ((1u << bits % most) - 1) + 1;
 }
 
 void BucketWalker::begin() {
