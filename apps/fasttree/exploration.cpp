@@ -62,6 +62,9 @@ void set_costs(ExploredRun& run, const MachineConfig& config,
   run.energy_uj = run.machine_uj + run.memory_uj;
   run.machine_power_w = energy.machine_power_w;
   run.tree_hash = hash_string(result.tree.hash());
+  for (const model::StageRecord& stage : result.stages) {
+    run.stages.emplace_back(stage.name, stage.end_cycle - stage.begin_cycle);
+  }
 }
 
 /// Runs that wait for a core and for memory, and what has become of each.

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command.h"
@@ -24,6 +25,8 @@ struct ExploredRun {
   double area_65nm_mm2 = 0, area_28nm_mm2 = 0;
   double machine_uj = 0, memory_uj = 0, energy_uj = 0, machine_power_w = 0;
   std::string tree_hash;
+  /// Cycles of each stage, in their order; not in the file.
+  std::vector<std::pair<std::string, std::uint64_t>> stages;
 
   bool done() const { return status == "done"; }
 };

@@ -46,7 +46,7 @@ double mm2_of(const Resources& resources, Process process);
 
 /// All units of one kind.
 struct AreaRow {
-  std::string kind;  ///< as UnitRecord::kind, or "control" for what is no unit of its own
+  std::string kind;  ///< UnitRecord's kind or the stem of its name, or what is no unit: "control"
   std::uint32_t count = 1;
   Resources resources;  ///< of all of them
   double mm2_65nm = 0;
@@ -62,7 +62,12 @@ struct AreaReport {
   void add(std::string kind, std::uint32_t count, const Resources& resources);
 };
 
+/// Of a paper's machine by its structure against Table I; of fasttree-2 by its blocks
+/// (model/fasttree2/area.h), at the same size of a gate.
 AreaReport area(const MachineConfig& config);
+
+/// A unit's name without its number: "lane" of "lane2".
+std::string unit_stem(const std::string& name);
 
 /// What the report rests on, in one sentence, to be printed with it.
 const char* area_basis();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "model/config/sections.h"
+#include "model/fasttree2/area.h"
 #include "model/report/paper_area.h"
 
 namespace fasttree::model {
@@ -141,6 +142,44 @@ RC_GTEST_PROP(Area, MoreNeverCostsLess, ()) {
   RC_ASSERT(small.total.registers <= large.total.registers + 1e-6);
   RC_ASSERT(small.total.ram_kbits <= large.total.ram_kbits + 1e-6);
   for (const AreaRow& row : small.rows) RC_ASSERT(row.mm2_65nm > 0);
+}
+
+TEST(Area, OfFastTree2IsThatOfItsBlocks) {
+  const MachineConfig config = config_of("fasttree-2");
+  const AreaReport report = area(config);
+  const FastTree2Area blocks = fasttree2_area(config.fasttree2);
+  EXPECT_NEAR(report.total.luts, blocks.luts(), 1e-6);
+  EXPECT_NEAR(report.total.registers, blocks.registers(), 1e-6);
+  EXPECT_NEAR(report.total.ram_kbits * 1024, static_cast<double>(blocks.sram_bits()), 1e-3);
+  // At the paper's size of a gate.
+  EXPECT_NEAR(report.mm2_65nm, 5.4 * gates_of(report.total) / gates_of(paper_area_total()), 1e-9);
+  for (const AreaRow& row : report.rows) {
+    if (row.kind == "lane") {
+      EXPECT_EQ(row.count, config.fasttree2.lanes);
+    }
+  }
+}
+
+TEST(Area, MoreOfFastTree2NeverCostsLess) {
+  const std::vector<std::string> costly = {
+      "quantisers",        "buckets",     "free_chunks",
+      "ready_buckets",     "lanes",       "lane_records",
+      "lane_cells",        "place_width", "plane_cache",
+      "leaf_queue",        "queue_depth", "stream_ids",
+      "lane_references",   "sub_buckets", "record_prefetch_bytes",
+      "write_buffer_bytes"};
+  const Section& section = section_of("fasttree2");
+  for (const std::string& key : costly) {
+    const Field& field = field_of(section, key);
+    double last = 0;
+    for (int part = 0; part <= 20; ++part) {
+      MachineConfig config = config_of("fasttree-2");
+      ASSERT_TRUE(set_field(section, field, config, value_between(field, part / 20.0), "").ok());
+      const double mm2 = area(config).mm2_65nm;
+      EXPECT_GE(mm2, last * (1 - 1e-12)) << key << " step " << part;
+      last = mm2;
+    }
+  }
 }
 
 TEST(Area, MoreOfTheseCostsMore) {

@@ -19,12 +19,14 @@ double pj_per_cycle(const Resources& resources, double paper_watts) {
   return share * paper_watts / kPaperMhz * 1e6;  // W / MHz = uJ
 }
 
-/// Share of the run in which the units of a kind work, on average. What has no account of its own
+/// Share of the run in which the units of a row work, on average. What has no account of its own
 /// (the control) always does.
 double busy_share(const std::string& kind, const SimulationResult& result) {
   std::uint64_t busy = 0, units = 0;
+  const bool named = std::any_of(result.units.begin(), result.units.end(),
+                                 [&](const auto& unit) { return unit_stem(unit.name) == kind; });
   for (const UnitRecord& unit : result.units) {
-    if (unit.kind != kind) continue;
+    if ((named ? unit_stem(unit.name) : unit.kind) != kind) continue;
     ++units;
     for (const Activity& activity : unit.by_stage) busy += activity.busy_cycles;
   }
