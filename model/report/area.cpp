@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/report/area.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "model/fasttree2/area.h"
@@ -17,26 +18,29 @@ constexpr double kGatesPerRamBit = 0.7;
 constexpr double kPaperMm2At65nm = 5.4;
 constexpr double kPaperMm2At28nm = 1.4;
 
-/// Lanes, and whatever else is there several times, in one row; bits that two blocks share are
-/// taken off the block that shares them out.
-AreaReport area_of(const FastTree2Area& blocks) {
-  struct Row {
-    std::string kind;
-    std::uint32_t count = 0;
-    Resources resources;
-  };
-  std::vector<Row> rows;
-  for (const AreaBlock& block : blocks.blocks) {
-    const std::string kind = unit_stem(block.name);
-    if (rows.empty() || rows.back().kind != kind) rows.push_back({kind, 0, {}});
-    ++rows.back().count;
-    rows.back().resources +=
-        Resources{static_cast<double>(block.luts), static_cast<double>(block.registers),
-                  static_cast<double>(block.sram_bits) / 1024};
-  }
+/// Lanes, and whatever else is there several times, in one row.
+AreaReport area_of(const FastTree2Config& config) {
+  const FastTree2Area blocks = fasttree2_area(config);
+  // Bits that two blocks use in turn: the lines that the write combiner gathers lie in the lanes'
+  // memories, the scene's prefetch in that of the records. They are taken off the former.
+  const std::uint64_t lines =
+      std::min(blocks.shared_bits, std::uint64_t{8} * config.buckets * config.combine_bytes);
   AreaReport report;
-  for (Row& row : rows) report.add(std::move(row.kind), row.count, row.resources);
-  report.add("memory used twice", 1, {0, 0, -static_cast<double>(blocks.shared_bits) / 1024});
+  for (std::size_t i = 0; i < blocks.blocks.size();) {
+    const std::string kind = unit_stem(blocks.blocks[i].name);
+    std::uint32_t count = 0;
+    Resources sum;
+    for (; i < blocks.blocks.size() && unit_stem(blocks.blocks[i].name) == kind; ++i, ++count) {
+      const AreaBlock& block = blocks.blocks[i];
+      sum += Resources{static_cast<double>(block.luts), static_cast<double>(block.registers),
+                       static_cast<double>(block.sram_bits) / 1024};
+    }
+    if (kind == "write_combiner") sum.ram_kbits -= static_cast<double>(lines) / 1024;
+    if (kind == "scene_reader") {
+      sum.ram_kbits -= static_cast<double>(blocks.shared_bits - lines) / 1024;
+    }
+    report.add(kind, count, sum);
+  }
   return report;
 }
 
@@ -69,7 +73,7 @@ std::string unit_stem(const std::string& name) {
 }
 
 AreaReport area(const MachineConfig& config) {
-  if (config.architecture == "fasttree-2") return area_of(fasttree2_area(config.fasttree2));
+  if (config.architecture == "fasttree-2") return area_of(config.fasttree2);
   AreaReport report;
   for (const PaperAreaRow& row : paper_area_rows(config.paper)) {
     report.add(row.kind, row.count, row.counted + row.rest);
