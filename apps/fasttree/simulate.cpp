@@ -12,6 +12,7 @@
 #include "fasttree/tree_file.h"
 #include "inputs.h"
 #include "model/config/machine_config.h"
+#include "model/report/costs.h"
 #include "model/report/first_difference.h"
 #include "model/report/html_report.h"
 #include "model/report/report_csv.h"
@@ -85,6 +86,7 @@ class SimulateCommand : public Command {
       report.difference = take(first_difference(scene.view, report.config, report.result,
                                                 context.progress.callback("reference:")));
     }
+    report.costs = cost_tables(report.config, report.result);
     context.progress.clear();
     print_simulation(context.output, report);
     if (!out_.empty()) {

@@ -185,6 +185,9 @@ void print_costs(Output& output, const CostTable& costs) {
   }
   table.row(sum);
   table.print(output);
+  for (const CostTable::Figure& figure : costs.figures) {
+    output.line("{}: {}", figure.title, fixed(figure.value, figure.digits));
+  }
   if (!costs.basis.empty()) output.line("{}", costs.basis);
 }
 

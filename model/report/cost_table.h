@@ -19,10 +19,20 @@ struct CostTable {
     std::vector<double> values;  ///< a column
   };
 
+  /// A figure of the whole, beside the columns.
+  struct Figure {
+    std::string key;
+    std::string title;
+    double value = 0;
+    int digits = 0;
+  };
+
+  std::string key;  ///< of the JSON: "area"
   std::string title;
   std::string basis;  ///< what the model rests on and what it leaves out, in a sentence or two
   std::vector<Column> columns;
   std::vector<Row> rows;
+  std::vector<Figure> figures;
 
   double total(std::size_t column) const {
     double sum = 0;

@@ -92,6 +92,12 @@ double tick_step(double most, int count) {
   return 10 * power;
 }
 
+/// Labels near the right end stay inside.
+std::string axis_label(double part, const std::string& text) {
+  return "<span" + std::string(part > 0.95 ? " class=\"end\"" : "") +
+         " style=\"left:" + fixed(100 * part, 2) + "%\">" + text + "</span>";
+}
+
 /// Labels under a plot, in milliseconds of the machine.
 std::string time_axis(const SimulationResult& result) {
   const double most = result.time_ms();
@@ -229,8 +235,7 @@ std::string latency_plot(const MemoryStatistics& memory) {
   const double end = 8.0 * static_cast<double>(count);
   const double step = std::max(8.0, tick_step(end, 6));
   for (int i = 0; i * step <= end; ++i) {
-    axis += "<span style=\"left:" + fixed(100 * i * step / end, 2) + "%\">" + fixed(i * step, 0) +
-            "</span>";
+    axis += axis_label(i * step / end, fixed(i * step, 0));
   }
   return "<div class=\"plot\">" + svg("area", "Reads by latency", body) + axis + "</div></div>\n";
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/report/html_report.h"
 
-#include <initializer_list>
+#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -19,7 +19,9 @@ class HtmlTable {
  public:
   explicit HtmlTable(const std::vector<std::string>& header) {
     text_ = "<div class=\"scroll\"><table>\n<thead><tr>";
-    for (const std::string& cell : header) text_ += "<th>" + cell + "</th>";
+    for (const std::string& cell : header) {
+      text_ += cell.starts_with("<th") ? cell : "<th>" + cell + "</th>";
+    }
     text_ += "</tr></thead>\n<tbody>\n";
   }
   void row(const std::vector<std::string>& cells, const char* style = nullptr) {
@@ -48,7 +50,9 @@ std::string tiles(const SimulationReport& report) {
       {grouped(r.cycles), "cycles"},
       {a_triangle(static_cast<double>(r.cycles), r, 2), "cycles a triangle"},
       {fixed(r.time_ms(), 3) + " ms", "a build"},
-      {fixed(frames_per_s(r), 1), "frames a second"},
+      {frames_per_s(r) < 1000 ? fixed(frames_per_s(r), 1)
+                              : grouped(static_cast<std::uint64_t>(frames_per_s(r))),
+       "frames a second"},
       {fixed(bandwidth, 2) + " GB/s",
        r.memory_traits.peak_gb_s > 0
            ? percent(bandwidth, r.memory_traits.peak_gb_s) + " of the memory's peak"
@@ -106,7 +110,7 @@ void unit_row(const UnitRecord& unit, const Activity& activity, HtmlTable& table
 
 std::string unit_tables(const SimulationResult& r) {
   const std::vector<std::string> header = {"unit", "busy", "stalled", "idle",
-                                           "<span class=\"words\">stalled on</span>"};
+                                           "<th class=\"words\">stalled on</th>"};
   HtmlTable whole(header);
   for (const UnitRecord& unit : r.units) unit_row(unit, whole_run(unit), whole);
   std::string text = whole.finish();
@@ -123,10 +127,11 @@ std::string unit_tables(const SimulationResult& r) {
 }
 
 std::string traffic_table(const SimulationResult& r) {
-  HtmlTable table({"stage", "purpose", "bytes read", "bytes written", "a triangle"});
+  HtmlTable table(
+      {"stage", "<th class=\"words\">purpose</th>", "bytes read", "bytes written", "a triangle"});
   const auto row = [&](const std::string& stage, const std::string& purpose, std::uint64_t read,
                        std::uint64_t written, const char* style) {
-    table.row({stage, purpose, grouped(read), grouped(written),
+    table.row({stage, "<td class=\"name\">" + purpose + "</td>", grouped(read), grouped(written),
                a_triangle(static_cast<double>(read + written), r, 1)},
               style);
   };
@@ -193,8 +198,14 @@ std::string cost_section(const CostTable& costs) {
     sum.push_back(fixed(costs.total(c), costs.columns[c].digits));
   }
   table.row(sum, "sum");
-  return "<h2>" + escaped_html(costs.title) + "</h2>\n" + table.finish() + "<p class=\"soft\">" +
-         escaped_html(costs.basis) + "</p>\n";
+  std::string figures;
+  for (const CostTable::Figure& figure : costs.figures) {
+    figures += (figures.empty() ? "<p>" : "; ") + escaped_html(figure.title) + ": " +
+               fixed(figure.value, figure.digits);
+  }
+  if (!figures.empty()) figures += ".</p>\n";
+  return "<h2>" + escaped_html(costs.title) + "</h2>\n" + table.finish() + figures +
+         "<p class=\"soft\">" + escaped_html(costs.basis) + "</p>\n";
 }
 
 }  // namespace

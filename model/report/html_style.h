@@ -36,10 +36,11 @@ svg { display: block; width: 100%; background: var(--card); }
 svg.bar { height: 2.4rem; }
 svg.strip { height: 1.5rem; }
 svg.area { height: 12rem; }
-.plot { position: relative; min-width: 0; padding-right: 1.2rem; }
+.plot { position: relative; min-width: 0; }
 .axis { position: relative; height: 1.5rem; font-size: 0.75rem; color: var(--soft); }
 .axis span { position: absolute; top: 0.15rem; transform: translateX(-50%); white-space: nowrap; }
 .axis span:first-child { transform: none; }
+.axis span.end { transform: translateX(-100%); }
 .chart { display: grid; grid-template-columns: 2.4rem 1fr; }
 .scale { position: relative; height: 12rem; font-size: 0.75rem; color: var(--soft); }
 .scale span { position: absolute; right: 0.4rem; transform: translateY(-50%); }
@@ -56,6 +57,7 @@ th, td { text-align: right; padding: 0.25rem 0.6rem; border-bottom: 1px solid va
 th:first-child, td:first-child { text-align: left; padding-left: 0; }
 th { color: var(--soft); font-weight: 600; }
 td.words { text-align: left; white-space: normal; min-width: 12rem; }
+th.words, td.name { text-align: left; }
 tr.sum td { font-weight: 600; border-bottom: 0; }
 details { margin: 0.8rem 0; }
 summary { cursor: pointer; }

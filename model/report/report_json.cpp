@@ -106,7 +106,7 @@ ordered_json cache_json(const CacheStatistics& cache) {
 }
 
 ordered_json costs_json(const std::vector<CostTable>& costs) {
-  ordered_json tables = ordered_json::array();
+  ordered_json tables = ordered_json::object();
   for (const CostTable& table : costs) {
     ordered_json total = ordered_json::object();
     ordered_json rows = ordered_json::array();
@@ -120,8 +120,8 @@ ordered_json costs_json(const std::vector<CostTable>& costs) {
       }
       rows.push_back(std::move(entry));
     }
-    tables.push_back(
-        {{"title", table.title}, {"basis", table.basis}, {"total", total}, {"units", rows}});
+    for (const CostTable::Figure& figure : table.figures) total[figure.key] = figure.value;
+    tables[table.key] = {{"total", total}, {"units", rows}, {"basis", table.basis}};
   }
   return tables;
 }
@@ -152,7 +152,7 @@ ordered_json report_json(const SimulationReport& report) {
   json["units"] = units_json(result);
   json["memory"] = memory_json(report);
   json["mark_cache"] = cache_json(result.mark_cache);
-  json["costs"] = costs_json(report.costs);
+  json.update(costs_json(report.costs));
   json["simulation_s"] = report.wall_s;
   json["simulation_cycles_per_s"] =
       report.wall_s > 0 ? static_cast<double>(result.cycles) / report.wall_s : 0.0;
