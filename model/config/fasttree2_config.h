@@ -36,7 +36,7 @@ struct FastTree2Config {
   // Lanes.
   std::uint32_t lanes = 3;
   std::uint32_t lane_records = 1024;
-  std::uint32_t lane_references = 3072;
+  std::uint32_t lane_references = 2432;
   std::uint32_t lane_cells = 512;
   std::uint32_t place_width = 8;
   std::uint32_t stream_ids = 4;
@@ -47,7 +47,7 @@ struct FastTree2Config {
   // Ports to memory.
   std::uint32_t scene_prefetch_bytes = 2048;
   std::uint32_t record_prefetch_bytes = 1024;
-  std::uint32_t write_buffer_bytes = 512;
+  std::uint32_t write_buffer_bytes = 256;
   // A run.
   std::uint64_t stuck_cycles = 100'000;
 

@@ -180,9 +180,10 @@ FastTree2Area fasttree2_area(const FastTree2Config& c) {
                         0});
   }
   {
-    // One datapath serves both partitions, which are never under way at the same time. A record is
-    // shifted to its byte of the line.
-    const U shift = kRecordBits / 8 * mux(8, c.combine_bytes) / 4 + mux(8 * c.combine_bytes, 2);
+    // One datapath serves both partitions, which are never under way at the same time. A record of
+    // twelve bytes is shifted by up to 3 bytes, then by 0, 4, 8 or 12, and is offered to every
+    // sixteen bytes of the line, with an enable a byte.
+    const U shift = 8 * 15 + 8 * 27 + mux(8 * c.combine_bytes, 2) + 2 * c.combine_bytes;
     const std::uint64_t entry = 2 * w.chunk + w.line_in_chunk + w.fill + kCountBits;
     add("write_combiner",
         {"", shift + 3 * adder(kCountBits) + comparator(kCountBits) + 120,

@@ -2,6 +2,9 @@
 // A memory for tests: fixed latency, so many accesses a cycle and channel, one that never answers.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <string>

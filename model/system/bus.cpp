@@ -96,7 +96,8 @@ std::uint32_t Bus::part_size(const BusRequest& request, std::uint32_t from) cons
 }
 
 std::uint32_t Bus::beat_size(std::uint64_t address, std::uint32_t left) const {
-  return std::min(left, config_.bytes - static_cast<std::uint32_t>(address % config_.bytes));
+  return std::min(left,
+                  config_.bytes - (static_cast<std::uint32_t>(address) & (config_.bytes - 1)));
 }
 
 void Bus::account(const BusRequest& request) {
@@ -111,7 +112,7 @@ bool Bus::choose(Transfer& transfer, bool reads, bool writes) {
   std::size_t read_at = 0;
   std::size_t write_at = 0;
   for (std::size_t i = 0; i < active_.size(); ++i) {
-    const std::size_t at = (next_data_port_ + i) % active_.size();
+    const std::size_t at = wrap(next_data_port_ + i);
     BusPort& port = *active_[at];
     if (reads && !read && port.read_count_ > 0) {
       const BusPort::Read& oldest = port.reads_[port.first_read_];
@@ -125,7 +126,7 @@ bool Bus::choose(Transfer& transfer, bool reads, bool writes) {
   const bool take_read = read && (!write || !last_was_read_);
   last_was_read_ = take_read;
   transfer = {take_read ? read : write, !take_read, 0};
-  next_data_port_ = ((take_read ? read_at : write_at) + 1) % active_.size();
+  next_data_port_ = wrap((take_read ? read_at : write_at) + 1);
   return true;
 }
 
@@ -192,7 +193,7 @@ void Bus::issue_reads() {
   const std::size_t start = next_read_port_;
   std::uint32_t commands = config_.commands_per_cycle;
   for (std::size_t i = 0; i < active_.size() && commands > 0; ++i) {
-    const std::size_t at = (start + i) % active_.size();
+    const std::size_t at = wrap(start + i);
     BusPort& port = *active_[at];
     if (!port.requests.valid() || port.requests.front().write) continue;
     const BusRequest& request = port.requests.front();
@@ -222,7 +223,7 @@ void Bus::issue_reads() {
       ++progress_;
       --commands;
       port.part_bytes_ += size;
-      next_read_port_ = (at + 1) % active_.size();
+      next_read_port_ = wrap(at + 1);
     }
     if (port.part_bytes_ == request.bytes) {
       port.reads_[(port.first_read_ + port.read_count_ - 1) % port.reads_.size()].issued = true;

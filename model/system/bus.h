@@ -43,7 +43,7 @@ struct BusRequest {
   std::uint32_t bytes = 0;
   bool write = false;
   Purpose purpose = Purpose::scene;
-  std::array<std::uint8_t, kMaxRequestBytes> data{};
+  std::array<std::uint8_t, kMaxRequestBytes> data;  ///< of a write; not set for a read
 };
 
 /// Where one unit is connected. Its requests are carried out in order.
@@ -88,7 +88,10 @@ class Bus : public Unit {
   /// A new port, the bus's own.
   BusPort& add_port(const std::string& name);
   /// The ports that the step uses; the others stay as they are.
-  void use_ports(const std::vector<BusPort*>& ports) { active_ = ports; }
+  void use_ports(const std::vector<BusPort*>& ports) {
+    active_ = ports;
+    next_data_port_ = next_read_port_ = 0;
+  }
 
   void tick() override;
   bool done() const override;
@@ -127,6 +130,9 @@ class Bus : public Unit {
   void issue_reads();
   std::uint32_t part_size(const BusRequest& request, std::uint32_t from) const;
   std::uint32_t beat_size(std::uint64_t address, std::uint32_t left) const;
+  std::size_t wrap(std::size_t port) const {
+    return port < active_.size() ? port : port - active_.size();
+  }
   void account(const BusRequest& request);
   bool inside(const BusRequest& request);
   bool lost_beat() { return drop_beat_ != 0 && --drop_beat_ == 0; }

@@ -236,23 +236,26 @@ TEST(PaperMachine, ALostBeatIsNoticed) {
   MachineConfig config = machine();
   config.paper.radix_sort.sorted_bits = 12;
   const SimulationResult whole = simulate(soup().view(), config).value();
-  const std::uint64_t beats = whole.units[0].by_stage[0].busy_cycles;
-  ASSERT_GT(beats, 1000u);
+  ASSERT_EQ(whole.units[0].name, "bus");
+  std::uint64_t beats = 0;
+  for (const Activity& activity : whole.units[0].by_stage) beats += activity.busy_cycles;
+  ASSERT_GT(beats, 10000u);
   int stuck = 0;
   int wrong = 0;
-  for (std::uint64_t beat = 100; beat < whole.cycles * 8 / 10; beat += 997) {
+  for (std::uint64_t beat = 1; beat <= beats; beat += beats / 61) {
     TestHooks hooks;
     hooks.drop_beat = beat;
     const Result<SimulationResult> result = simulate(soup().view(), config, hooks);
     if (!result.ok()) {
-      ++stuck;
+      // Where pairs are missing, what lay there before is no code, and the image no tree.
+      ++(result.status().message().find("stuck") != std::string::npos ? stuck : wrong);
       continue;
     }
     EXPECT_NE(test::difference(soup().view(), config.paper, result.value()), "") << beat;
     ++wrong;
   }
-  EXPECT_GT(stuck, 5) << "a read waits for ever";
-  EXPECT_GT(wrong, 5) << "a write is missing";
+  EXPECT_GT(stuck, 20) << "a read waits for ever";
+  EXPECT_GT(wrong, 20) << "a write is missing";
 }
 
 TEST(PaperMachine, AWrongVictimShowsInTheCachesHits) {

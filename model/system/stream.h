@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 
@@ -30,7 +31,7 @@ class StreamReader {
   void tick() {
     if (next_ == end_ || !port_->requests.ready()) return;
     const auto size = static_cast<std::uint32_t>(
-        std::min<std::uint64_t>(end_ - next_, burst_bytes_ - next_ % burst_bytes_));
+        std::min<std::uint64_t>(end_ - next_, burst_bytes_ - (next_ & (burst_bytes_ - 1))));
     if (asked_ + size - port_->data.taken() > port_->data.capacity()) return;
     BusRequest request;
     request.address = Address(next_);
@@ -75,14 +76,14 @@ class BlockWriter {
 
   /// Requests that put() makes at most for so many bytes.
   std::size_t requests_for(std::size_t bytes) const {
-    return (next_ % block_bytes_ + bytes) / block_bytes_;
+    return ((next_ & (block_bytes_ - 1)) + bytes) >> std::countr_zero(block_bytes_);
   }
   bool ready(std::size_t bytes) const { return port_->requests.ready(requests_for(bytes)); }
   void put(const void* from, std::size_t bytes) {
     const auto* source = static_cast<const std::uint8_t*>(from);
     while (bytes > 0) {
       if (request_.bytes == 0) request_.address = Address(next_);
-      const std::size_t room = block_bytes_ - next_ % block_bytes_;
+      const std::size_t room = block_bytes_ - (next_ & (block_bytes_ - 1));
       const std::size_t part = std::min(room, bytes);
       std::memcpy(request_.data.data() + request_.bytes, source, part);
       request_.bytes += static_cast<std::uint32_t>(part);

@@ -51,6 +51,7 @@ void BitEncodingUnit::tick() {
 bool BitEncodingUnit::clear() {
   if (!port_.requests.ready()) return false;
   BusRequest zeros;
+  zeros.data.fill(0);
   zeros.address = Address(clear_next_);
   zeros.bytes = static_cast<std::uint32_t>(
       std::min<std::uint64_t>(kMaxRequestBytes, clear_end_ - clear_next_));
