@@ -19,6 +19,7 @@
 #include "options.h"
 #include "output.h"
 #include "pareto.h"
+#include "progress.h"
 
 namespace fasttree::app {
 namespace {
