@@ -230,7 +230,7 @@ TEST(CliSimulate, DegenerateScenesHaveReportsToo) {
       EXPECT_EQ(result.exit_code, 0) << machine << scene << result.err;
       const std::string page = read_file(folder.path("r.html"));
       EXPECT_EQ(page.find("nan"), std::string::npos) << machine << scene;
-      EXPECT_NO_THROW((void)json::parse(read_file(folder.path("t.json"))));
+      EXPECT_TRUE(json::accept(read_file(folder.path("t.json"))));
     }
   }
 }
@@ -269,7 +269,7 @@ TEST(CliSimulate, AnUnknownConfigurationIsAnsweredWithThoseThereAre) {
 TEST(CliSimulate, LimitsAndStuckMachinesAreFour) {
   for (const std::string& machine : kMachines) {
     expect_error(run({"simulate", "scene:knot:100", "--config", machine, "--max-cycles", "10"}), 4,
-                 "10");
+                 "cycles");
     EXPECT_EQ(run({"simulate", "scene:knot:100", "--config", machine, "--max-cycles", "10000000"})
                   .exit_code,
               0);
