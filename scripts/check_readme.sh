@@ -5,7 +5,7 @@
 # A block after <!-- compile --> (```cpp or ```c) is compiled against the installed library, linked
 # and run. Links to files that do not exist fail as well.
 #
-#   scripts/check_readme.sh [PAGE...]     default: README.md, CONTRIBUTING.md and docs/*.md
+#   scripts/check_readme.sh [PAGE...]     default: README.md, CONTRIBUTING.md, docs/*.md and docs/*/*.md
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/lib.sh
@@ -13,7 +13,7 @@ root=$PWD
 export PATH=$root/build/apps/fasttree:$PATH
 
 pages=("$@")
-if [ ${#pages[@]} -eq 0 ]; then pages=(README.md CONTRIBUTING.md docs/*.md); fi
+if [ ${#pages[@]} -eq 0 ]; then pages=(README.md CONTRIBUTING.md docs/*.md docs/*/*.md); fi
 
 configure_and_build build fasttree_app -DCMAKE_BUILD_TYPE=Release >/dev/null
 

@@ -79,5 +79,8 @@ std::unique_ptr<Command> make_compare_command();
 std::unique_ptr<Command> make_animate_command();
 std::unique_ptr<Command> make_view_command();
 std::unique_ptr<Command> make_memory_command();
+std::unique_ptr<Command> make_simulate_command();
+std::unique_ptr<Command> make_explore_command();
+std::unique_ptr<Command> make_reproduce_command();
 
 }  // namespace fasttree::app

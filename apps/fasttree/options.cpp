@@ -122,6 +122,11 @@ void Options::text(std::string& value, const char* name, const char* type,
       value);
 }
 
+void Options::texts(std::vector<std::string>& values, const char* name, const char* type,
+                    const std::string& help) {
+  app_.add_option(name, values, help)->type_name(type)->expected(1)->take_all();
+}
+
 void Options::flag(bool& value, const char* name, const std::string& help) {
   app_.add_flag(name, value, help);
 }

@@ -37,6 +37,9 @@ class Options {
   void positional(std::string& value, const char* name, const std::string& help,
                   bool required = true);
   void text(std::string& value, const char* name, const char* type, const std::string& help);
+  /// May be given several times; each appends.
+  void texts(std::vector<std::string>& values, const char* name, const char* type,
+             const std::string& help);
   void flag(bool& value, const char* name, const std::string& help);
   /// Two flags that set the same value and exclude each other: --smooth, --flat.
   void flag_pair(bool& value, const char* on, const char* off, const std::string& help_on,

@@ -55,9 +55,11 @@ void Table::print(Output& output) const {
   for (const auto& row : rows_) {
     std::string text;
     for (std::size_t i = 0; i < row.size(); ++i) {
-      text += i == 0 ? fmt::format("{:<{}}", row[i], width[i])
-                     : fmt::format("  {:>{}}", row[i], width[i]);
+      text += i == 0        ? fmt::format("{:<{}}", row[i], width[i])
+              : i == words_ ? fmt::format("  {:<{}}", row[i], width[i])
+                            : fmt::format("  {:>{}}", row[i], width[i]);
     }
+    text.resize(text.find_last_not_of(' ') + 1);
     output.line("{}", text);
   }
 }

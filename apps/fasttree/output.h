@@ -41,12 +41,15 @@ class Output {
 class Table {
  public:
   explicit Table(std::vector<std::string> header) { rows_.push_back(std::move(header)); }
+  /// This column is words: to the left as well.
+  void words(std::size_t column) { words_ = column; }
   void row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
   void print(Output& output) const;
   std::string csv() const;
 
  private:
   std::vector<std::vector<std::string>> rows_;
+  std::size_t words_ = 0;
 };
 
 /// "1,234,567"
