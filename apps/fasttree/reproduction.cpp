@@ -124,14 +124,14 @@ std::vector<Compared> reproduce_table3(const std::string& scene, const PaperBuil
   return rows;
 }
 
-Table table_of(const std::vector<Compared>& rows, bool costs) {
+Table table_of(const std::vector<Compared>& rows, bool costs, bool reasons) {
   std::vector<std::string> header = {"scene", "figure", "how", "ours ms", "paper ms", "ratio"};
   if (costs) {
     header.insert(header.end(), {"over RayCore", "mm2", "W"});
   } else {
     header.insert(header.end(), {"cycles/tri", "paper c/tri", "FPS"});
   }
-  header.emplace_back("reason");
+  if (reasons) header.emplace_back("reason");
   Table table(header);
   for (const Compared& row : rows) {
     std::vector<std::string> cells = {row.scene,
@@ -149,7 +149,7 @@ Table table_of(const std::vector<Compared>& rows, bool costs) {
       cells.push_back(number(row.paper_cycles_per_triangle, 2));
       cells.push_back(fmt::format("{:.0f}", 1000 / row.time_ms));
     }
-    cells.push_back(row.reason);
+    if (reasons) cells.push_back(row.reason);
     table.row(std::move(cells));
   }
   return table;
