@@ -49,7 +49,8 @@ std::vector<Compared> reproduce_table3(const std::string& scene, const PaperBuil
                                        const std::vector<const ExploredRun*>& machines,
                                        const std::vector<LibraryTime>& library);
 
-Table table_of(const std::vector<Compared>& rows, bool costs);
+/// `costs`: with area and power; `reasons`: with the reasons, which are long.
+Table table_of(const std::vector<Compared>& rows, bool costs, bool reasons);
 nlohmann::ordered_json json_of(const Compared& row);
 
 }  // namespace fasttree::app

@@ -211,7 +211,7 @@ TEST(CliExplore, TheSameOnAnyNumberOfThreads) {
   run_json(grid(folder.path("1"), {"--threads", "1"}));
   run_json(grid(folder.path("5"), {"--threads", "5"}));
   // Memory for one at a time.
-  run_json(grid(folder.path("m"), {"--threads", "5", "--memory-limit", "40M"}));
+  run_json(grid(folder.path("m"), {"--threads", "5", "--memory-limit", "60M"}));
   for (const char* file : {"/results.csv", "/pareto.svg"}) {
     EXPECT_EQ(read_file(folder.path("1") + file), read_file(folder.path("5") + file));
     EXPECT_EQ(read_file(folder.path("1") + file), read_file(folder.path("m") + file));
