@@ -32,8 +32,8 @@ struct Stages {
   Buffer<CodeBox> boxes;
   Buckets buckets;
   std::vector<std::uint32_t> ids;
-  std::vector<std::uint32_t> first_node_of_bucket;
-  std::vector<Node> nodes;
+  build::Buffer<std::uint32_t> first_node_of_bucket;
+  build::Buffer<Node> nodes;
 
   Stages()
       : info(Builder().build(mesh).value().info()),
