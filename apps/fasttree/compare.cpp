@@ -24,6 +24,7 @@
 #include "oracle/embree_oracle.h"
 #include "output.h"
 #include "progress.h"
+#include "vertex_buffers.h"
 #include "views.h"
 
 namespace fasttree::app {
@@ -144,10 +145,11 @@ class CompareCommand : public Command {
     comparison.width = rays_.width;
     comparison.height = rays_.height;
 
+    const VertexBuffers buffers(scene.view);
     const MeasuredRays rays =
-        make_rays(static_cast<TreeContender&>(*contenders[0]), scene.view, comparison);
+        make_rays(static_cast<TreeContender&>(*contenders[0]), buffers.view(), comparison);
     drop_embree_where_it_cannot(contenders, rays, bounds_, comparison);
-    comparison.wrong = measure(context, contenders, scene.view, rays);
+    comparison.wrong = measure(context, contenders, buffers.view(), rays);
     context.progress.clear();
 
     std::vector<Figures> embrees;
