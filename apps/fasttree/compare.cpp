@@ -56,7 +56,7 @@ class Judge {
 
   bool latest_is_expected(RayKind kind) const {
     if (kind == RayKind::shadow) return latest_.flags == expected(kind).flags;
-    const std::vector<Hit>& hits = expected(kind).hits;
+    const Measured<Hit>& hits = expected(kind).hits;
     return std::equal(latest_.hits.begin(), latest_.hits.end(), hits.begin(), hits.end(),
                       same_bits);
   }

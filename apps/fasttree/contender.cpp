@@ -65,7 +65,7 @@ class EmbreeContender : public Contender {
     return milliseconds_since(start);
   }
 
-  double trace(RayKind kind, std::size_t way, const std::vector<Ray>& rays, Traced&) override {
+  double trace(RayKind kind, std::size_t way, std::span<const Ray> rays, Traced&) override {
     const int width = oracle::kEmbreeWidths[way];
     if (kind == RayKind::shadow) {
       rays_->set_occluded(rays, width);
@@ -114,7 +114,7 @@ double TreeContender::build(const MeshView& mesh) {
   return milliseconds_since(start);
 }
 
-double TreeContender::trace(RayKind kind, std::size_t way, const std::vector<Ray>& rays,
+double TreeContender::trace(RayKind kind, std::size_t way, std::span<const Ray> rays,
                             Traced& traced) {
   const RayOrder order = way == 0 ? RayOrder::incoherent : RayOrder::coherent;
   const auto start = Clock::now();

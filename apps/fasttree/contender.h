@@ -19,7 +19,7 @@ namespace fasttree::app {
 
 /// Results of one kind of rays, to be compared with those of somebody else.
 struct Traced {
-  std::vector<Hit> hits;            ///< primary and diffuse rays
+  Measured<Hit> hits;               ///< primary and diffuse rays
   std::vector<std::uint8_t> flags;  ///< shadow rays
 };
 
@@ -58,7 +58,7 @@ class Contender {
 
   /// Traces all rays one way, on the threads of the calling arena. Milliseconds on the wall clock.
   /// `traced` is where results go, though some arrive there only with read().
-  virtual double trace(RayKind kind, std::size_t way, const std::vector<Ray>& rays,
+  virtual double trace(RayKind kind, std::size_t way, std::span<const Ray> rays,
                        Traced& traced) = 0;
 
   /// Sees to it that `traced` holds the results of the last trace().
@@ -75,8 +75,7 @@ class TreeContender : public Contender {
   TreeContender(std::string name, BuildSettings settings);
 
   double build(const MeshView& mesh) override;
-  double trace(RayKind kind, std::size_t way, const std::vector<Ray>& rays,
-               Traced& traced) override;
+  double trace(RayKind kind, std::size_t way, std::span<const Ray> rays, Traced& traced) override;
 
   /// Fills in the figures that are the same each round.
   void study(const MeasuredRays& rays);

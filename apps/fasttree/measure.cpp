@@ -113,7 +113,7 @@ MeasuredRays make_measured_rays(const render::Camera& camera, const RaySettings&
   return result;
 }
 
-TraceCounters count_rays(const Tracer& tracer, RayKind kind, const std::vector<Ray>& rays) {
+TraceCounters count_rays(const Tracer& tracer, RayKind kind, std::span<const Ray> rays) {
   const auto add = [](TraceCounters a, const TraceCounters& b) {
     a.inner_steps += b.inner_steps;
     a.leaf_visits += b.leaf_visits;

@@ -5,8 +5,10 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "build/buffer.h"
 #include "fasttree/mesh.h"
 #include "fasttree/trace.h"
 #include "render/camera.h"
@@ -22,12 +24,16 @@ enum class RayKind : std::uint8_t {
 inline constexpr std::array kRayKinds = {RayKind::primary, RayKind::shadow, RayKind::diffuse};
 const char* to_string(RayKind kind);
 
+/// In huge pages where the system has them, as all that contenders are measured on.
+template <typename T>
+using Measured = build::Buffer<T>;
+
 /// The same rays for everything that is compared.
 struct MeasuredRays {
-  std::array<std::vector<Ray>, kRayKinds.size()> rays;
+  std::array<Measured<Ray>, kRayKinds.size()> rays;
   Vec3 light;  ///< where the shadow rays end
 
-  const std::vector<Ray>& of(RayKind kind) const { return rays[static_cast<std::size_t>(kind)]; }
+  std::span<const Ray> of(RayKind kind) const { return rays[static_cast<std::size_t>(kind)]; }
 };
 
 /// Where the rays come from.
@@ -45,6 +51,6 @@ MeasuredRays make_measured_rays(const render::Camera& camera, const RaySettings&
                                 const MeshView& mesh, const Box3& bounds, const Tracer& tracer);
 
 /// Steps and tests of all rays of a kind.
-TraceCounters count_rays(const Tracer& tracer, RayKind kind, const std::vector<Ray>& rays);
+TraceCounters count_rays(const Tracer& tracer, RayKind kind, std::span<const Ray> rays);
 
 }  // namespace fasttree::app

@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "support/large_memory.h"
+
 #if FASTTREE_HAVE_EMBREE
 
 #include <embree3/rtcore.h>
@@ -157,8 +159,6 @@ Status embree_error(RTCDevice device, const char* what) {
 }  // namespace
 
 struct EmbreeRays::Impl {
-  static constexpr std::align_val_t kAlignment{64};
-
   std::byte* memory = nullptr;
   std::size_t capacity = 0;
   std::size_t count = 0;
@@ -168,7 +168,13 @@ struct EmbreeRays::Impl {
   Impl() = default;
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
-  ~Impl() { ::operator delete(memory, kAlignment); }
+  ~Impl() { release(); }
+
+  void release() {
+    if (memory != nullptr) release_large(memory, capacity);
+    memory = nullptr;
+    capacity = 0;
+  }
 
   template <typename Packet>
   Packet* packets() const {
@@ -179,10 +185,8 @@ struct EmbreeRays::Impl {
   void set(std::span<const Ray> rays) {
     const std::size_t n = (rays.size() + kWidth - 1) / kWidth;
     if (n * sizeof(Packet) > capacity) {
-      ::operator delete(memory, kAlignment);
-      memory = nullptr;
-      capacity = 0;
-      memory = static_cast<std::byte*>(::operator new(n * sizeof(Packet), kAlignment));
+      release();
+      memory = static_cast<std::byte*>(allocate_large(n * sizeof(Packet)));
       capacity = n * sizeof(Packet);
     }
     count = rays.size();
