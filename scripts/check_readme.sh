@@ -48,7 +48,7 @@ for page in "${pages[@]}"; do
   done < <(grep -oE '\]\([^)]+\)|(src|href)="[^"]+"' "$page" |
     sed -E 's/^\]\(//; s/\)$//; s/^(src|href)="//; s/"$//' | grep -vE '^(https?:|mailto:)' || true)
 
-  blocks=$work/$(basename "$page" .md)
+  blocks=$work/${page%.md}  # pages in two folders may share a name
   mkdir -p "$blocks"
   extract "$page" "$blocks"
   count=0
