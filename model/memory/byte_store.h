@@ -26,10 +26,12 @@ class ByteStore {
   std::uint64_t size() const { return size_; }
   void read(Address from, void* to, std::size_t count) const {
     assert(from.value + count <= size_);
+    if (count == 0) return;  // an empty array may have no address
     std::memcpy(to, bytes_.get() + from.value, count);
   }
   void write(Address to, const void* from, std::size_t count) {
     assert(to.value + count <= size_);
+    if (count == 0) return;
     std::memcpy(bytes_.get() + to.value, from, count);
   }
   std::span<const std::uint8_t> view(Address from, std::size_t count) const {
