@@ -263,7 +263,8 @@ ft_status ft_tracer_occluded(const ft_tracer* tracer, const ft_ray* ray, uint8_t
 /* What is known of the rays of a batch: it changes the time they take, never their results. */
 typedef enum ft_ray_order {
   FT_RAYS_INCOHERENT = 0, /* anything: each ray goes its own way */
-  FT_RAYS_COHERENT = 1    /* neighbours start and go nearly alike: 8 x 8 pixels, then the next */
+  FT_RAYS_COHERENT = 1,   /* neighbours start and go nearly alike: 8 x 8 pixels, then the next */
+  FT_RAY_ORDER_IS_INT = 0x7fffffff /* not an order: lets a wrong value be told from a right one */
 } ft_ray_order;
 
 /* `count` rays into `count` hits or flags. threads as in ft_build_settings. */

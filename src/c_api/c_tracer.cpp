@@ -34,13 +34,9 @@ void store(const Hit& from, ft_hit& to) {
 }
 
 Status read_order(const char* call, ft_ray_order from, RayOrder& to) {
-  switch (from) {
-    case FT_RAYS_INCOHERENT:
-      to = RayOrder::incoherent;
-      return {};
-    case FT_RAYS_COHERENT:
-      to = RayOrder::coherent;
-      return {};
+  if (from == FT_RAYS_INCOHERENT || from == FT_RAYS_COHERENT) {
+    to = from == FT_RAYS_COHERENT ? RayOrder::coherent : RayOrder::incoherent;
+    return {};
   }
   return invalid(std::string(call) + ": order is " + std::to_string(static_cast<int>(from)) +
                  "; give FT_RAYS_INCOHERENT or FT_RAYS_COHERENT");
