@@ -2,8 +2,8 @@
 #include "model/fasttree2/split_plane.h"
 
 #include <algorithm>
-#include <bit>
-#include <limits>
+
+#include "grid/float_order.h"
 
 namespace fasttree::model::ft2 {
 
@@ -14,44 +14,17 @@ namespace {
 constexpr std::uint32_t kGuessCycles = 8;
 constexpr std::uint32_t kTrialCycles = 5;
 
-// Floats in their order as integers.
-std::int64_t to_ordinal(float v) {
-  const auto i = std::bit_cast<std::int32_t>(v);
-  return i >= 0 ? i : std::int64_t{std::numeric_limits<std::int32_t>::min()} - i;
-}
-float from_ordinal(std::int64_t ordinal) {
-  const auto i = static_cast<std::int32_t>(ordinal);
-  return std::bit_cast<float>(i >= 0 ? i : std::numeric_limits<std::int32_t>::min() - i);
-}
-
 }  // namespace
 
 PlaneSearch search_plane(const AxisQuantiser& quantiser, float hi, std::uint32_t finest_cell) {
   PlaneSearch search;
-  const auto reached = [&](std::int64_t ordinal) {
-    ++search.trials;
-    return quantiser(from_ordinal(ordinal)) >= finest_cell;
-  };
   // The bounds themselves are known: the lower one is in cell 0, the upper one in the last.
-  std::int64_t below = to_ordinal(quantiser.lo);
-  std::int64_t above = to_ordinal(hi);
   const float guess = quantiser.lo + static_cast<float>(finest_cell) / quantiser.scale;
-  const std::int64_t start = to_ordinal(guess);
-  if (start > below && start < above) {
-    const bool down = reached(start);
-    (down ? above : below) = start;
-    for (std::int64_t step = 1; above - below > step; step *= 2) {
-      const std::int64_t next = down ? above - step : below + step;
-      const bool there = reached(next);
-      (there ? above : below) = next;
-      if (there != down) break;
-    }
-  }
-  while (above - below > 1) {
-    const std::int64_t middle = below + (above - below) / 2;
-    (reached(middle) ? above : below) = middle;
-  }
-  search.plane = from_ordinal(above);
+  search.plane = from_ordinal(first_reached(
+      to_ordinal(quantiser.lo), to_ordinal(hi), to_ordinal(guess), [&](std::int64_t ordinal) {
+        ++search.trials;
+        return quantiser(from_ordinal(ordinal)) >= finest_cell;
+      }));
   return search;
 }
 

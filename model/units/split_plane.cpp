@@ -2,26 +2,14 @@
 #include "model/units/split_plane.h"
 
 #include <algorithm>
-#include <bit>
-#include <limits>
 
 #include "fasttree/device_image.h"
+#include "grid/float_order.h"
 
 namespace fasttree::model {
 namespace {
 
 enum Stall : std::size_t { kBus };
-
-// Binary32 values in their order as integers; both zeros are 0.
-std::int64_t to_ordinal(float v) {
-  const auto i = std::bit_cast<std::int32_t>(v);
-  return i >= 0 ? i : std::numeric_limits<std::int32_t>::min() - i;
-}
-
-float from_ordinal(std::int64_t ordinal) {
-  const auto i = static_cast<std::int32_t>(ordinal);
-  return std::bit_cast<float>(i >= 0 ? i : std::numeric_limits<std::int32_t>::min() - i);
-}
 
 }  // namespace
 
