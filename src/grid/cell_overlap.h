@@ -5,7 +5,7 @@
 // additions. The test never misses an overlap: rounding of the coordinates, of the planes and of
 // the arithmetic here moves nothing by more than kOverlapSlack times the largest coordinate, and
 // cells are taken to be that much larger. Operations are in a fixed order and none is fused; the
-// vectorised form (src/build/layer_kernels.cpp) has the same ones.
+// vectorised form (src/build/layer_masks.cpp) has the same ones.
 #pragma once
 
 #include <array>
