@@ -7,33 +7,14 @@
 #include <array>
 #include <cstddef>
 
+#include "model/report/text.h"
+
 namespace fasttree::app {
 namespace {
 
 // Colours that stay apart for the colour-blind (Okabe and Ito).
 constexpr std::array kColours = {"#0072b2", "#56b4e9", "#e69f00", "#d55e00",
                                  "#999999", "#009e73", "#cc79a7"};
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      default:
-        // Control characters are not allowed in XML at all.
-        result += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-    }
-  }
-  return result;
-}
 
 }  // namespace
 
@@ -46,11 +27,11 @@ std::string bar_chart_svg(const std::string& title, const std::vector<ChartPanel
   std::string body;
   int y = 34;
   body += fmt::format("<text x=\"16\" y=\"{}\" font-size=\"18\" font-weight=\"bold\">{}</text>\n",
-                      y, escaped(title));
+                      y, model::escaped_html(title));
   for (const ChartPanel& panel : panels) {
     y += 36;
     body += fmt::format("<text x=\"16\" y=\"{}\" font-weight=\"bold\">{}</text>\n", y,
-                        escaped(panel.title));
+                        model::escaped_html(panel.title));
     y += 10;
     double most = 0;
     for (const auto& bar : panel.bars) most = std::max(most, bar.value);
@@ -58,11 +39,11 @@ std::string bar_chart_svg(const std::string& title, const std::vector<ChartPanel
       const auto& bar = panel.bars[i];
       const double length = most > 0 ? std::max(1.0, bar.value / most * kLongest) : 1.0;
       body += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\n", kLabels - 8,
-                          y + 15, escaped(bar.label));
+                          y + 15, model::escaped_html(bar.label));
       body += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{}\" fill=\"{}\"/>\n",
                           kLabels, y, length, kBar, kColours[i % kColours.size()]);
       body += fmt::format("<text x=\"{:.1f}\" y=\"{}\">{}</text>\n", kLabels + length + 6, y + 15,
-                          escaped(bar.text));
+                          model::escaped_html(bar.text));
       y += kStep;
     }
   }

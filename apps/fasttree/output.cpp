@@ -9,6 +9,7 @@
 #include <span>
 
 #include "command.h"
+#include "model/report/text.h"
 #include "tree/atomic_file.h"
 
 namespace fasttree::app {
@@ -68,13 +69,7 @@ std::string Table::csv() const {
   std::string text;
   for (const auto& row : rows_) {
     for (std::size_t i = 0; i < row.size(); ++i) {
-      std::string cell = row[i];
-      if (cell.find_first_of(",\"\n") != std::string::npos) {
-        std::string quoted = "\"";
-        for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-        cell = quoted + "\"";
-      }
-      text += (i == 0 ? "" : ",") + cell;
+      text += (i == 0 ? "" : ",") + model::csv_cell(row[i]);
     }
     text += "\n";
   }
@@ -82,25 +77,11 @@ std::string Table::csv() const {
 }
 
 std::string with_commas(unsigned long long value) {
-  const std::string digits = std::to_string(value);
-  std::string text;
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
-    text += digits[i];
-  }
-  return text;
+  return model::grouped(value);
 }
 
 std::string bytes_text(unsigned long long bytes) {
-  if (bytes < 1024) return fmt::format("{} bytes", bytes);
-  double value = static_cast<double>(bytes) / 1024;
-  const char* unit = "KiB";
-  for (const char* next : {"MiB", "GiB", "TiB"}) {
-    if (value < 1024) break;
-    value /= 1024;
-    unit = next;
-  }
-  return fmt::format("{:.1f} {}", value, unit);
+  return model::byte_count(bytes);
 }
 
 }  // namespace fasttree::app

@@ -8,6 +8,8 @@
 #include <limits>
 #include <numeric>
 
+#include "model/report/text.h"
+
 namespace fasttree::app {
 namespace {
 
@@ -16,22 +18,6 @@ constexpr double kLeft = 70, kRight = 530, kTop = 90, kFoot = 370;
 /// Of so many points and more, labels would lie on each other.
 constexpr std::size_t kMostLabels = 24;
 constexpr std::size_t kMostLegend = 60;
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&') {
-      result += "&amp;";
-    } else if (c == '<') {
-      result += "&lt;";
-    } else if (c == '>') {
-      result += "&gt;";
-    } else {
-      result += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-    }
-  }
-  return result;
-}
 
 /// An axis round the values, with a step of 1, 2 or 5 times a power of ten.
 struct Axis {
@@ -66,7 +52,7 @@ std::string panel_svg(const ParetoPanel& panel, const std::vector<std::string>& 
   }
   const Axis across(xs), up(ys);
   std::string body = fmt::format("<text x=\"{}\" y=\"76\" font-weight=\"bold\">{}</text>\n", kLeft,
-                                 escaped(panel.title));
+                                 model::escaped_html(panel.title));
   const auto ticks = [](const Axis& axis) {
     return static_cast<int>(std::lround((axis.to - axis.from) / axis.step));
   };
@@ -86,10 +72,10 @@ std::string panel_svg(const ParetoPanel& panel, const std::vector<std::string>& 
   body += fmt::format("<path d=\"M{0} {1}V{2}H{3}\" fill=\"none\" stroke=\"#222222\"/>\n", kLeft,
                       kTop, kFoot, kRight);
   body += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
-                      (kLeft + kRight) / 2, kPanelHeight - 8, escaped(panel.x_label));
+                      (kLeft + kRight) / 2, kPanelHeight - 8, model::escaped_html(panel.x_label));
   body += fmt::format(
       "<text transform=\"translate(18 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-      (kTop + kFoot) / 2, escaped(panel.y_label));
+      (kTop + kFoot) / 2, model::escaped_html(panel.y_label));
 
   const std::vector<bool> front = pareto_front(panel.costs);
   std::vector<std::size_t> on_front;
@@ -112,7 +98,7 @@ std::string panel_svg(const ParetoPanel& panel, const std::vector<std::string>& 
         "<circle class=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"{}\" "
         "stroke=\"{}\"><title>{}</title></circle>\n",
         front[i] ? "front" : "point", x, y, front[i] ? "#d55e00" : "#ffffff",
-        front[i] ? "#d55e00" : "#0072b2", escaped(labels[i]));
+        front[i] ? "#d55e00" : "#0072b2", model::escaped_html(labels[i]));
     if (panel.costs.size() > kMostLabels && !front[i]) continue;
     // Labels of the right half stand to the left of their points.
     const bool left = x > (kLeft + kRight) / 2;
@@ -150,15 +136,17 @@ std::string pareto_svg(const std::string& title, const std::vector<std::string>&
   const std::size_t listed = std::min(labels.size(), kMostLegend);
   const double width = kPanelWidth * static_cast<double>(panels.size());
   const double height = kPanelHeight + 30 + 18 * static_cast<double>(listed + 1);
-  std::string body = fmt::format(
-      "<text x=\"16\" y=\"34\" font-size=\"18\" font-weight=\"bold\">{}</text>\n", escaped(title));
+  std::string body =
+      fmt::format("<text x=\"16\" y=\"34\" font-size=\"18\" font-weight=\"bold\">{}</text>\n",
+                  model::escaped_html(title));
   for (std::size_t p = 0; p < panels.size(); ++p) {
     body += fmt::format("<g transform=\"translate({:.0f} 0)\">\n{}</g>\n",
                         kPanelWidth * static_cast<double>(p), panel_svg(panels[p], labels));
   }
   for (std::size_t i = 0; i < listed; ++i) {
     body += fmt::format("<text x=\"{}\" y=\"{:.0f}\" font-size=\"12\">{}  {}</text>\n", kLeft,
-                        kPanelHeight + 30 + 18 * static_cast<double>(i), i + 1, escaped(labels[i]));
+                        kPanelHeight + 30 + 18 * static_cast<double>(i), i + 1,
+                        model::escaped_html(labels[i]));
   }
   if (listed < labels.size()) {
     body +=

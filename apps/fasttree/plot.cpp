@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "model/report/text.h"
+
 namespace fasttree::app {
 namespace {
 
@@ -15,23 +17,6 @@ namespace {
 constexpr std::array kColours = {"#0072b2", "#d55e00", "#555555", "#009e73"};
 constexpr std::array kDashes = {"", " stroke-dasharray=\"7 3\"", " stroke-dasharray=\"2 3\"",
                                 " stroke-dasharray=\"9 3 2 3\""};
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&') {
-      result += "&amp;";
-    } else if (c == '<') {
-      result += "&lt;";
-    } else if (c == '>') {
-      result += "&gt;";
-    } else {
-      // Control characters are not allowed in XML at all.
-      result += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-    }
-  }
-  return result;
-}
 
 /// A step of 1, 2 or 5 times a power of ten, so that `most` is reached in at most `steps`.
 double tick_step(double most, int steps) {
@@ -62,8 +47,9 @@ std::string line_plot_svg(const std::string& title, const std::string& x_label,
   const auto x_of = [&](double x) { return kLeft + x / last * (kRight - kLeft); };
   const auto y_of = [&](double y) { return kFoot - y / top * (kFoot - kTop); };
 
-  std::string body = fmt::format(
-      "<text x=\"16\" y=\"34\" font-size=\"18\" font-weight=\"bold\">{}</text>\n", escaped(title));
+  std::string body =
+      fmt::format("<text x=\"16\" y=\"34\" font-size=\"18\" font-weight=\"bold\">{}</text>\n",
+                  model::escaped_html(title));
   for (int i = 0; i * step <= top * (1 + 1e-9); ++i) {
     const double y = y_of(i * step);
     body += fmt::format(
@@ -82,10 +68,10 @@ std::string line_plot_svg(const std::string& title, const std::string& x_label,
   body += fmt::format("<path d=\"M{0} {1}V{2}H{3}\" fill=\"none\" stroke=\"#222222\"/>\n", kLeft,
                       kTop, kFoot, kRight);
   body += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
-                      (kLeft + kRight) / 2, kHeight - 12, escaped(x_label));
+                      (kLeft + kRight) / 2, kHeight - 12, model::escaped_html(x_label));
   body += fmt::format(
       "<text transform=\"translate(20 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-      (kTop + kFoot) / 2, escaped(y_label));
+      (kTop + kFoot) / 2, model::escaped_html(y_label));
 
   double legend = kLeft;
   for (std::size_t l = 0; l < lines.size(); ++l) {
@@ -107,7 +93,7 @@ std::string line_plot_svg(const std::string& title, const std::string& x_label,
     body += fmt::format(
         "<path d=\"M{:.0f} 58h26\" stroke=\"{}\" stroke-width=\"2\"{}/>\n"
         "<text x=\"{:.0f}\" y=\"63\">{}</text>\n",
-        legend, colour, dash, legend + 32, escaped(lines[l].label));
+        legend, colour, dash, legend + 32, model::escaped_html(lines[l].label));
     legend += 56 + 8.0 * static_cast<double>(lines[l].label.size());
   }
   return fmt::format(
