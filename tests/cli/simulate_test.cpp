@@ -274,6 +274,10 @@ TEST(CliSimulate, LimitsAndStuckMachinesAreFour) {
                   .exit_code,
               0);
   }
+  // A device that is too small for the scene, its pairs and its tree.
+  expect_error(
+      run({"simulate", "scene:knot:20k", "--config", "paper-asic65", "--set", "memory.rows=16"}), 4,
+      "the scene needs");
   // A memory that takes a millisecond to answer looks dead to the machine's control.
   const RunResult stuck = run({"simulate", "scene:knot:100", "--set", "memory.preset=fixed",
                                "--set", "memory.latency_ns=1000000"});
