@@ -4,3 +4,5 @@ common/ft_fifo.sv
 common/ft_skid.sv
 common/ft_arbiter.sv
 common/ft_block_writer.sv
+units/ft_prefix_sum_sweep.sv
+units/ft_prefix_sum.sv
