@@ -4,3 +4,5 @@ common/ft_fifo.sv
 common/ft_skid.sv
 common/ft_arbiter.sv
 common/ft_block_writer.sv
+system/ft_registers.sv
+system/ft_control.sv
