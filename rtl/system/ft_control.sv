@@ -123,6 +123,8 @@ module ft_control (
     else if (order.mark_bytes < marks_need || order.mark_bytes[1:0] != '0) bad_word = 32'd14;
     else if (order.rounds == '0 || order.rounds > 32'd8 || {order.rounds[3:0], 2'd0} < {1'b0, order.shape[4:0]})
       bad_word = 32'd15;
+    else if (order.window_begin[5:0] != '0) bad_word = 32'd16;
+    else if (order.window_end[5:0] != '0) bad_word = 32'd17;
     else order_bad = 1'b0;
   end
 
