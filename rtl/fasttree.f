@@ -4,3 +4,7 @@ common/ft_fifo.sv
 common/ft_skid.sv
 common/ft_arbiter.sv
 common/ft_block_writer.sv
+units/ft_lru.sv
+units/ft_mark_cache.sv
+units/ft_bit_encoding.sv
+units/ft_path_compression.sv
