@@ -89,7 +89,7 @@ module ft_path_compression #(
   // What climbs: how its parent names it, its last leaf, and the leaf before its first one (the
   // first leaf less one is the rank of the parent, for an upper child). Of each ancestor that is
   // still open, `before_open` keeps the leaf before its first one, by level.
-  logic [31:0] child, leaf, before, opened;
+  logic [31:0] child, leaf, previous, opened;
   logic [31:0] before_open[0:31];
 
   // The parent whose mark is looked at.
@@ -134,13 +134,13 @@ module ft_path_compression #(
   always_ff @(posedge clk) begin
     if (climbs && from_leaf) begin
       leaf   <= next_leaf;
-      before <= next_leaf - 1'b1;
+      previous <= next_leaf - 1'b1;
       child  <= next_leaf | ft_pkg::DeviceLeaf;
     end else if (arrive && essential && upper) begin
       child  <= rank;
-      before <= opened;
+      previous <= opened;
     end
-    if (arrive && essential && !upper) before_open[level] <= before;
+    if (arrive && essential && !upper) before_open[level] <= previous;
 
     // Where it goes next is where it looks, or will.
     if (climbs) begin
@@ -154,14 +154,14 @@ module ft_path_compression #(
       ask_parent <= grand_parent;
       ask_addr   <= marks + {3'b000, grand_parent[31:5], 2'b00};
       ask_root   <= level == depth;
-      rank       <= upper ? before : leaf;
-      link       <= nodes[31:4] + (upper ? before[27:0] : leaf[27:0]);
+      rank       <= upper ? previous : leaf;
+      link       <= nodes[31:4] + (upper ? previous[27:0] : leaf[27:0]);
       opened     <= before_open[level];
     end else if (next_take) begin
       ask_addr <= next_addr;
     end
 
-    pause <= climbs ? FirstPause : pause - 1'b1;
+    pause <= climbs ? FirstPause : pause - 6'(pause != '0);
     if (start) root <= ft_pkg::DeviceLeaf;
     else if (climbs && at_root) begin
       root <= from_leaf ? next_leaf | ft_pkg::DeviceLeaf : essential ? rank : child;
