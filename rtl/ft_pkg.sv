@@ -86,7 +86,7 @@ package ft_pkg;
   localparam logic [7:0] ErrorNotFinite = 8'd3;   // detail: coordinate, nine a triangle
   localparam logic [7:0] ErrorReferences = 8'd4;  // more than there is room for; detail: that room
   localparam logic [7:0] ErrorLeaves = 8'd5;      // more than there is room for; detail: that room
-  localparam logic [7:0] ErrorMemory = 8'd6;      // a response other than OKAY
+  localparam logic [7:0] ErrorMemory = 8'd6;      // a response other than OKAY; detail: [4] write, [3:0] its ID
   localparam logic [7:0] ErrorWindow = 8'd7;      // a request outside the window; detail: its address
   localparam logic [7:0] ErrorCancelled = 8'd8;
   localparam logic [7:0] ErrorTimeout = 8'd9;     // nothing has moved for the watchdog's cycles

@@ -30,15 +30,15 @@ enum { FT_ACCEL_START = 1, FT_ACCEL_CANCEL = 2, FT_ACCEL_FLUSH = 4 };
 /* ft_accel_error(): why a build has failed. */
 enum {
   FT_ACCEL_OK = 0,
-  FT_ACCEL_BAD_ORDER = 1,        /* error_detail: number of the order's word that cannot be */
-  FT_ACCEL_SCENE_TOO_LARGE = 2,  /* for its buffer */
-  FT_ACCEL_NOT_FINITE = 3,       /* error_detail: number of the coordinate, nine a triangle */
-  FT_ACCEL_REFERENCES = 4,       /* more than there is room for */
-  FT_ACCEL_LEAVES = 5,           /* more than there is room for */
-  FT_ACCEL_MEMORY = 6,           /* memory answered with an error */
-  FT_ACCEL_WINDOW = 7,           /* a request outside the window; error_detail: its address */
+  FT_ACCEL_BAD_ORDER = 1,       /* error_detail: number of the order's word that cannot be */
+  FT_ACCEL_SCENE_TOO_LARGE = 2, /* for its buffer */
+  FT_ACCEL_NOT_FINITE = 3,      /* error_detail: number of the coordinate, nine a triangle */
+  FT_ACCEL_REFERENCES = 4,      /* more than there is room for */
+  FT_ACCEL_LEAVES = 5,          /* more than there is room for */
+  FT_ACCEL_MEMORY = 6, /* memory answered with an error; error_detail: [4] write, [3:0] ID */
+  FT_ACCEL_WINDOW = 7, /* a request outside the window; error_detail: its address */
   FT_ACCEL_CANCELLED = 8,
-  FT_ACCEL_TIMEOUT = 9           /* nothing moved for the watchdog's cycles */
+  FT_ACCEL_TIMEOUT = 9 /* nothing moved for the watchdog's cycles */
 };
 
 /* The words from FT_ACCEL_ORDER on. Addresses are of bytes, multiples of 4096. */
@@ -67,9 +67,9 @@ typedef struct ft_accel_order {
 /* The words from FT_ACCEL_RESULT on; stable once the build is done. */
 typedef struct ft_accel_result {
   uint32_t references;
-  uint32_t leaves; /* rows of the leaf table; an empty scene has 0, and one empty row */
-  uint32_t root;   /* bit 31: leaf; else the rank of an internal node */
-  uint32_t grid;   /* [4:0] depth, [11:8] [15:12] [19:16] bits of x, y, z */
+  uint32_t leaves;             /* rows of the leaf table; an empty scene has 0, and one empty row */
+  uint32_t root;               /* bit 31: leaf; else the rank of an internal node */
+  uint32_t grid;               /* [4:0] depth, [11:8] [15:12] [19:16] bits of x, y, z */
   uint32_t lower[3], upper[3]; /* the scene's bounds, binary32 */
   uint32_t error_detail;
   uint32_t cycles_low, cycles_high;
@@ -104,12 +104,18 @@ static inline uint64_t ft_accel_plan(ft_accel_order* order, uint32_t base, uint3
   const uint64_t most = references < cells ? references : cells;
   const uint64_t leaves = most > 0 ? most : 1;
   const uint64_t marks = 2 * cells / 8 > 64 ? 2 * cells / 8 : 64;
-  const uint64_t sizes[9] = {(uint64_t)triangles * 36, (uint64_t)references * 8,
-                             (uint64_t)references * 8, (uint64_t)references * 4,
-                             (uint64_t)references * 4, leaves * 4, leaves * 8, marks, leaves * 16};
-  uint32_t* const regions[9] = {&order->scene,      &order->pairs0,     &order->pairs1,
+  const uint64_t sizes[9] = {(uint64_t)triangles * 36,
+                             (uint64_t)references * 8,
+                             (uint64_t)references * 8,
+                             (uint64_t)references * 4,
+                             (uint64_t)references * 4,
+                             leaves * 4,
+                             leaves * 8,
+                             marks,
+                             leaves * 16};
+  uint32_t* const regions[9] = {&order->scene,        &order->pairs0,     &order->pairs1,
                                 &order->sorted_codes, &order->sorted_ids, &order->leaf_codes,
-                                &order->leaf_rows,  &order->marks,      &order->nodes};
+                                &order->leaf_rows,    &order->marks,      &order->nodes};
   uint64_t at = base;
   int i;
   if (base % 4096 != 0 || depth > 30 || references >= 1u << 29 || leaves >= 1u << 28) return 0;

@@ -140,6 +140,7 @@ module fasttree_top #(
   logic [31:0] sort_to;
   logic bus_abort, bus_clear, bus_quiet, bus_moved, bus_error, bus_stray;
   logic [31:0] bus_stray_addr, bad_word, references, leaves, root, read_beats, write_beats, climb_steps;
+  logic [4:0] bus_error_id;
   logic bad, references_overflow, leaves_overflow;
   logic [95:0] lower, upper;
   logic [159:0] mark_statistics;
@@ -183,6 +184,7 @@ module fasttree_top #(
       .bus_quiet(bus_quiet),
       .bus_moved(bus_moved),
       .bus_error(bus_error),
+      .bus_error_id(bus_error_id),
       .bus_stray(bus_stray),
       .bus_stray_addr(bus_stray_addr),
       .not_finite(bad),
@@ -253,7 +255,7 @@ module fasttree_top #(
       .stray(bus_stray),
       .stray_addr(bus_stray_addr),
       .axi_error(bus_error),
-      .axi_error_id(),
+      .axi_error_id(bus_error_id),
       .read_beats(read_beats),
       .write_beats(write_beats),
       .stream_start(stream_start),

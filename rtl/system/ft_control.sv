@@ -47,6 +47,7 @@ module ft_control (
     input  logic        bus_quiet,
     input  logic        bus_moved,
     input  logic        bus_error,
+    input  logic [4:0]  bus_error_id,  // write, and its ID
     input  logic        bus_stray,
     input  logic [31:0] bus_stray_addr,
 
@@ -141,8 +142,10 @@ module ft_control (
     end else if (phase == Check && scene_needs > {6'd0, order.scene_bytes}) begin
       found        = ft_pkg::ErrorScene;
       found_detail = order.scene_bytes;
-    end else if (bus_error) found = ft_pkg::ErrorMemory;
-    else if (bus_stray) begin
+    end else if (bus_error) begin
+      found        = ft_pkg::ErrorMemory;
+      found_detail = 32'(bus_error_id);
+    end else if (bus_stray) begin
       found        = ft_pkg::ErrorWindow;
       found_detail = bus_stray_addr;
     end else if (not_finite && phase == Bounds) begin
