@@ -6,3 +6,17 @@ common/ft_arbiter.sv
 common/ft_block_writer.sv
 units/ft_prefix_sum_sweep.sv
 units/ft_prefix_sum.sv
+system/ft_registers.sv
+system/ft_control.sv
+units/ft_lru.sv
+units/ft_mark_cache.sv
+units/ft_bit_encoding.sv
+units/ft_path_compression.sv
+system/ft_window.sv
+system/ft_write_port.sv
+system/ft_write_order.sv
+system/ft_stream_reader.sv
+system/ft_block_reader.sv
+system/ft_axi_rules.sv
+system/ft_bus_writes.sv
+system/ft_bus.sv
