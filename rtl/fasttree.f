@@ -20,3 +20,6 @@ system/ft_block_reader.sv
 system/ft_axi_rules.sv
 system/ft_bus_writes.sv
 system/ft_bus.sv
+units/ft_digit_blocks.sv
+units/ft_radix_sort.sv
+system/ft_sorter.sv

@@ -64,7 +64,11 @@ class StreamReader {
 class BlockWriter {
  public:
   void start(BusPort& port, std::uint32_t block_bytes, Address at, Purpose purpose) {
-    port_ = &port;
+    start(port.requests, block_bytes, at, purpose);
+  }
+  /// Where blocks wait elsewhere before they go to the port.
+  void start(Queue<BusRequest>& requests, std::uint32_t block_bytes, Address at, Purpose purpose) {
+    requests_ = &requests;
     block_bytes_ = block_bytes;
     next_ = at.value;
     purpose_ = purpose;
@@ -78,7 +82,7 @@ class BlockWriter {
   std::size_t requests_for(std::size_t bytes) const {
     return ((next_ & (block_bytes_ - 1)) + bytes) >> std::countr_zero(block_bytes_);
   }
-  bool ready(std::size_t bytes) const { return port_->requests.ready(requests_for(bytes)); }
+  bool ready(std::size_t bytes) const { return requests_->ready(requests_for(bytes)); }
   void put(const void* from, std::size_t bytes) {
     const auto* source = static_cast<const std::uint8_t*>(from);
     while (bytes > 0) {
@@ -99,12 +103,12 @@ class BlockWriter {
     if (request_.bytes == 0) return;
     request_.write = true;
     request_.purpose = purpose_;
-    port_->requests.push(request_);
+    requests_->push(request_);
     request_.bytes = 0;
   }
 
  private:
-  BusPort* port_ = nullptr;
+  Queue<BusRequest>* requests_ = nullptr;
   std::uint32_t block_bytes_ = kMaxRequestBytes;
   std::uint64_t next_ = 0;
   Purpose purpose_ = Purpose::scene;

@@ -65,58 +65,53 @@ std::uint32_t down_sweep(std::uint32_t* values, std::uint32_t section) {
 
 PrefixSumUnit::PrefixSumUnit(std::string name, const PaperConfig::PrefixSum& config)
     : Unit(std::move(name), "prefix_sum", {"radix_sort"}),
-      input(2),
-      output(2),
       section_(config.section),
-      stages_(std::max<std::uint32_t>(config.stages, 2)) {}
+      full_(std::max<std::uint32_t>(config.stages, 2)),
+      sections_(full_.size() + 1) {}
 
-// From the last stage to the first, so that a section moves where the one before it has moved. The
-// sweeps are whole in the first and last stage; stages between them only take their time.
-void PrefixSumUnit::tick() {
-  if (held_ == 0 && !input.valid()) {
-    idle();
-    return;
+// The sums are made at once; the stages only take their time.
+void PrefixSumUnit::push(const Section& section) {
+  assert(ready());
+  Section& sums = sections_[slot(held_)];
+  sums = section;
+  up_sweep(sums.values, section_);
+  sums.total = down_sweep(sums.values, section_);
+  pushed_ = true;
+}
+
+// From the last stage to the first, so that a section moves where the one before it has moved.
+void PrefixSumUnit::clock() {
+  if (!ticked_) return;
+  ticked_ = false;
+  const bool nothing = held_ == 0 && !pushed_;
+  bool moved = pushed_ || taken_;
+  if (taken_) {
+    full_.back() = false;
+    first_ = slot(1);
+    --held_;
   }
-  bool moved = false;
-  for (std::size_t s = stages_.size(); s-- > 0;) {
-    Stage& stage = stages_[s];
-    if (!stage.full) continue;
-    if (s + 1 == stages_.size()) {
-      if (!output.ready()) continue;
-      output.push(stage.section);
-      --held_;
-    } else {
-      Stage& next = stages_[s + 1];
-      if (next.full) continue;
-      next.section = stage.section;
-      next.full = true;
-      if (s + 2 == stages_.size()) {
-        next.section.total = down_sweep(next.section.values, section_);
-      }
-    }
-    stage.full = false;
+  for (std::size_t s = full_.size() - 1; s-- > 0;) {
+    if (!full_[s] || full_[s + 1]) continue;
+    full_[s] = false;
+    full_[s + 1] = true;
     moved = true;
   }
-  if (input.valid() && !stages_.front().full) {
-    stages_.front().section = input.pop();
-    stages_.front().full = true;
+  if (pushed_) {
+    full_.front() = true;
     ++held_;
-    up_sweep(stages_.front().section.values, section_);
-    moved = true;
   }
-  if (moved) {
+  pushed_ = taken_ = false;
+  if (nothing) {
+    idle();
+  } else if (moved) {
     busy();
   } else {
     stalled(kTaker);
   }
 }
 
-bool PrefixSumUnit::done() const {
-  return input.empty() && output.empty() && held_ == 0;
-}
-
 std::string PrefixSumUnit::waits_for() const {
-  if (stages_.back().full) return "radix_sort to take a section's sums";
+  if (full_.back()) return "radix_sort to take a section's sums";
   return {};
 }
 

@@ -3,13 +3,13 @@
 // Docs: docs/accelerator/prefix_sum.md.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <cstring>
 #include <string>
 #include <vector>
 
 #include "model/config/paper_config.h"
-#include "model/kernel/queue.h"
 #include "model/kernel/unit.h"
 
 namespace fasttree::model {
@@ -40,30 +40,43 @@ void up_sweep(std::uint32_t* values, std::uint32_t section);
 /// Second half: the sums are handed down the tree. Takes the total out of the last element.
 std::uint32_t down_sweep(std::uint32_t* values, std::uint32_t section);
 
+/// Its stages are registers without queues around them: a section that is pushed lies in the first
+/// stage in the next cycle, and what lies in the last one is the result. Gaps close, and room that
+/// the taker makes is room for the next section in the same cycle: so take before asking ready().
 class PrefixSumUnit : public Unit {
  public:
   PrefixSumUnit(std::string name, const PaperConfig::PrefixSum& config);
 
-  Queue<Section> input;
-  Queue<Section> output;
+  bool ready() const { return !pushed_ && (taken_ || held_ < full_.size()); }
+  void push(const Section& section);
 
-  void tick() override;
-  bool done() const override;
-  std::string waits_for() const override;
-  void clock() {
-    input.clock();
-    output.clock();
+  bool valid() const { return full_.back() && !taken_; }
+  const Section& front() const {
+    assert(valid());
+    return sections_[first_];
+  }
+  void drop() {
+    assert(valid());
+    taken_ = true;
   }
 
+  void tick() override { ticked_ = true; }
+  bool done() const override { return held_ == 0 && !pushed_; }
+  std::string waits_for() const override;
+  /// The rising edge. The account of the cycle is made here, when it is known what was taken.
+  void clock();
+
  private:
-  struct Stage {
-    bool full = false;
-    Section section;
-  };
+  std::size_t slot(std::size_t i) const { return (first_ + i) % sections_.size(); }
 
   std::uint32_t section_;
-  std::uint32_t held_ = 0;     ///< sections in the stages
-  std::vector<Stage> stages_;  ///< up-sweep in the first half, down-sweep in the second
+  std::vector<bool> full_;         ///< by stage
+  std::vector<Section> sections_;  ///< a ring of what the stages hold, summed from the start
+  std::size_t first_ = 0;
+  std::size_t held_ = 0;  ///< sections in stages
+  bool pushed_ = false;   ///< in this cycle
+  bool taken_ = false;    ///< in this cycle
+  bool ticked_ = false;
 };
 
 }  // namespace fasttree::model

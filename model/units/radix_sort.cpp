@@ -25,7 +25,9 @@ RadixSortUnit::RadixSortUnit(const PaperConfig& config, BusPort& port,
       psus_(std::move(psus)),
       begin_(radix_),
       writers_(radix_),
-      id_writers_(radix_) {
+      id_writers_(radix_),
+      blocks_(std::size_t{4} * config.radix_sort.pairs_per_cycle),
+      waiting_(radix_) {
   for (Buffer& buffer : buffers_) {
     buffer.raw.resize(std::size_t{capacity_} * pair_size_);
     buffer.code.resize(capacity_);
@@ -43,7 +45,7 @@ void RadixSortUnit::start(const SortRound& round, const std::vector<std::uint32_
   next_counts_.assign(radix_, 0);
   reader_.start(round_.from, round_.pairs * pair_size_, Purpose::pairs);
   partial_bytes_ = 0;
-  offset_section_ = 0;
+  offset_digits_ = 0;
   offset_asked_ = false;
   offset_ = 0;
   for (Buffer& buffer : buffers_) buffer.want = buffer.bytes = buffer.count = 0;
@@ -54,34 +56,54 @@ void RadixSortUnit::start(const SortRound& round, const std::vector<std::uint32_
   state_ = own_pass ? State::count : State::offsets;
 }
 
+// What lies in registers as the cycle begins decides; so the pairs on their way move before the
+// section's work adds to them.
 void RadixSortUnit::tick() {
-  bool worked = false;
-  switch (state_) {
-    case State::count:
-      reader_.tick();
-      worked = count_pass();
-      break;
-    case State::offsets:
-      // The stream may run ahead while the digits' begins are summed.
-      reader_.tick();
-      worked = offsets();
-      break;
-    case State::move:
-      reader_.tick();
-      worked = work_ == Work::scan ? scan() : work_ == Work::scatter && scatter();
-      worked |= fetch();
-      break;
-    case State::flush:
-      worked = flush();
-      break;
-    case State::done:
-      idle();
-      return;
+  if (state_ == State::done) {
+    idle();
+    return;
   }
+  reader_.tick();
+  reading_ = ranked_.count > 0;
+  empty_ = !reading_ && placed_.count == 0 && blocks_.empty() && !out_full_;
+  advance();
+  hand_on();
+  const bool worked = step();
+  blocks_.clock();
   if (worked) {
     busy();
   } else {
     stalled(waits_);
+  }
+}
+
+bool RadixSortUnit::step() {
+  switch (state_) {
+    case State::count:
+      return count_pass();
+    case State::offsets:
+      // The stream may run ahead while the digits' begins are summed.
+      return offsets();
+    case State::move: {
+      bool worked = fetch();
+      worked |= work_ == Work::scan ? scan() : work_ == Work::scatter && scatter();
+      choose_work();
+      return worked;
+    }
+    case State::drain:
+      waits_ = kBusWrite;
+      if (empty_) state_ = State::flush;
+      return empty_;
+    case State::flush:
+      waits_ = kBusWrite;
+      if (!room_for_blocks()) return false;
+      flush(next_flush_);
+      if (++next_flush_ == radix_) state_ = State::finish;
+      return true;
+    default:
+      waits_ = kBusWrite;
+      if (empty_) state_ = State::done;
+      return empty_;
   }
 }
 
@@ -110,66 +132,56 @@ bool RadixSortUnit::count_pass() {
   return true;
 }
 
-// The digits' counts, a section at a time, through the first prefix sum unit.
+// The digits' counts, a section at a time, through the first prefix sum unit; their begins one a
+// cycle out of its result.
 bool RadixSortUnit::offsets() {
   const std::uint32_t length = config_.prefix_sum.section;
-  const std::uint32_t first = offset_section_ * length;
+  const std::uint32_t first = offset_digits_ / length * length;
   const std::uint32_t count = std::min(length, radix_ - first);
   PrefixSumUnit& psu = *psus_.front();
+  waits_ = kPrefixSum;
   if (!offset_asked_) {
-    if (!psu.input.ready()) {
-      waits_ = kPrefixSum;
-      return false;
-    }
+    if (!psu.ready()) return false;
     Section section(length);
     std::fill_n(section.values, length, 0);
     std::copy_n(counts_.begin() + first, count, section.values);
-    psu.input.push(section);
+    psu.push(section);
     offset_asked_ = true;
     return true;
   }
-  if (!psu.output.valid()) {
-    waits_ = kPrefixSum;
-    return false;
-  }
-  const Section sums = psu.output.pop();
-  for (std::uint32_t d = 0; d < count; ++d) begin_[first + d] = offset_ + sums.values[d];
-  offset_ += sums.total;
+  if (!psu.valid()) return false;
+  begin_[offset_digits_] = offset_ + psu.front().values[offset_digits_ - first];
+  if (++offset_digits_ < first + count) return true;
+  offset_ += psu.front().total;
+  psu.drop();
   offset_asked_ = false;
-  if (++offset_section_ * length < radix_) return true;
+  if (offset_digits_ == radix_) {
+    start_writers();
+    state_ = round_.pairs > 0 ? State::move : State::drain;
+  }
+  return true;
+}
+
+void RadixSortUnit::start_writers() {
+  const std::uint64_t size = round_.last ? 4 : pair_size_;
   for (std::uint32_t d = 0; d < radix_; ++d) {
-    const std::uint64_t size = round_.last ? 4 : pair_size_;
-    writers_[d].start(port_, config_.radix_sort.combine_bytes,
+    writers_[d].start(blocks_, config_.radix_sort.combine_bytes,
                       Address(round_.to.value + begin_[d] * size),
                       round_.last ? Purpose::sorted_codes : Purpose::pairs);
     if (round_.last) {
-      id_writers_[d].start(port_, config_.radix_sort.combine_bytes,
+      id_writers_[d].start(blocks_, config_.radix_sort.combine_bytes,
                            Address(round_.to_ids.value + begin_[d] * size), Purpose::sorted_ids);
     }
   }
-  state_ = State::move;
-  return true;
 }
 
 // A bus width of pairs into the section that is being loaded. With one buffer that waits until the
 // section before has been moved.
 bool RadixSortUnit::fetch() {
   Buffer& buffer = buffers_[loading_];
-  if (buffer.count > 0) {
-    // Loaded: waits for its turn.
-    if (work_ != Work::none) return false;
-    working_ = loading_;
-    if (config_.radix_sort.double_buffer) loading_ ^= 1;
-    work_ = Work::scan;
-    asked_digits_ = summed_digits_ = 0;
-    return true;
-  }
-  if (work_ != Work::none && working_ == loading_) return false;
+  if (buffer.count > 0) return false;
   if (buffer.want == 0) {
-    if (fetched_pairs_ == round_.pairs) {
-      if (work_ == Work::none) state_ = State::flush;
-      return false;
-    }
+    if (fetched_pairs_ == round_.pairs) return false;
     begin_fetch(buffer);
   }
   const std::size_t bytes = std::min(config_.bus.bytes, buffer.want - buffer.bytes);
@@ -179,17 +191,21 @@ bool RadixSortUnit::fetch() {
   }
   reader_.take(buffer.raw.data() + buffer.bytes, bytes);
   buffer.bytes += static_cast<std::uint32_t>(bytes);
-  if (buffer.bytes == buffer.want) {
-    unpack(buffer);
-    // The scan may begin in the next cycle.
-    if (work_ == Work::none) {
-      working_ = loading_;
-      if (config_.radix_sort.double_buffer) loading_ ^= 1;
-      work_ = Work::scan;
-      asked_digits_ = summed_digits_ = 0;
-    }
-  }
+  if (buffer.bytes == buffer.want) unpack(buffer);
   return true;
+}
+
+// What the next cycle works at.
+void RadixSortUnit::choose_work() {
+  if (work_ != Work::none) return;
+  if (buffers_[loading_].count > 0) {
+    working_ = loading_;
+    if (config_.radix_sort.double_buffer) loading_ ^= 1;
+    work_ = Work::scan;
+    asked_digits_ = summed_digits_ = 0;
+  } else if (fetched_pairs_ == round_.pairs && buffers_[loading_].want == 0) {
+    state_ = State::drain;
+  }
 }
 
 void RadixSortUnit::begin_fetch(Buffer& buffer) {
@@ -211,19 +227,20 @@ void RadixSortUnit::unpack(Buffer& buffer) {
   std::fill(buffer.digit.begin() + buffer.count, buffer.digit.end(), kNoDigit);
 }
 
-// For each digit every unit sums the flags of the pairs with that digit: their ranks.
+// For each digit every unit sums the flags of the pairs with that digit: their ranks. Not while a
+// place is still to be made from the begins, which change now.
 bool RadixSortUnit::scan() {
   bool worked = false;
-  if (asked_digits_ < radix_ &&
-      std::all_of(psus_.begin(), psus_.end(), [](auto* psu) { return psu->input.ready(); })) {
-    send_flags();
-    worked = true;
-  }
-  if (std::all_of(psus_.begin(), psus_.end(), [](auto* psu) { return psu->output.valid(); })) {
+  if (std::all_of(psus_.begin(), psus_.end(), [](auto* psu) { return psu->valid(); })) {
     collect_sums();
     worked = true;
   }
-  if (!worked) waits_ = kPrefixSum;
+  if (asked_digits_ < radix_ && !reading_ &&
+      std::all_of(psus_.begin(), psus_.end(), [](auto* psu) { return psu->ready(); })) {
+    send_flags();
+    worked = true;
+  }
+  waits_ = reading_ ? kBusWrite : kPrefixSum;
   return worked;
 }
 
@@ -236,7 +253,7 @@ void RadixSortUnit::send_flags() {
     const auto asked = static_cast<std::uint16_t>(asked_digits_);
     for (std::uint32_t i = 0; i < length; ++i) section.values[i] = digits[i] == asked;
     section.tag = asked_digits_;
-    psus_[p]->input.push(section);
+    psus_[p]->push(section);
   }
   ++asked_digits_;
 }
@@ -247,7 +264,7 @@ void RadixSortUnit::collect_sums() {
   const std::uint32_t length = config_.prefix_sum.section;
   std::uint32_t offset = begin_[summed_digits_];
   for (std::uint32_t p = 0; p < psus_.size(); ++p) {
-    const Section& sums = psus_[p]->output.front();
+    const Section& sums = psus_[p]->front();
     const std::uint16_t* digits = buffer.digit.data() + p * length;
     std::uint32_t* places = buffer.place.data() + p * length;
     const auto summed = static_cast<std::uint16_t>(sums.tag);
@@ -255,7 +272,7 @@ void RadixSortUnit::collect_sums() {
       places[i] = digits[i] == summed ? offset + sums.values[i] : places[i];
     }
     offset += sums.total;
-    psus_[p]->output.drop();
+    psus_[p]->drop();
   }
   begin_[summed_digits_] = offset;
   if (++summed_digits_ == radix_) {
@@ -264,79 +281,99 @@ void RadixSortUnit::collect_sums() {
   }
 }
 
+// The next pairs of the section, where those on their way have moved on.
 bool RadixSortUnit::scatter() {
   Buffer& buffer = buffers_[working_];
-  std::uint32_t moved = 0;
-  while (moved < config_.radix_sort.pairs_per_cycle && next_pair_ < buffer.count) {
-    if (!place(buffer, next_pair_)) {
-      waits_ = kBusWrite;
-      break;
-    }
-    ++next_counts_[digit(buffer.code[next_pair_], round_.number + 1)];
-    ++next_pair_;
-    ++moved;
+  waits_ = kBusWrite;
+  if (!advanced_) return false;
+  ranked_.count = std::min(config_.radix_sort.pairs_per_cycle, buffer.count - next_pair_);
+  for (std::uint32_t i = 0; i < ranked_.count; ++i, ++next_pair_) {
+    ranked_.items[i] = {buffer.code[next_pair_], buffer.id[next_pair_], buffer.place[next_pair_],
+                        buffer.digit[next_pair_]};
   }
   if (next_pair_ == buffer.count) {
     buffer.count = 0;
     work_ = Work::none;
   }
-  return moved > 0;
+  return true;
+}
+
+// The registers move all or none.
+void RadixSortUnit::advance() {
+  advanced_ = placed_.count == 0 || blocks_take(placed_);
+  if (!advanced_) return;
+  for (std::uint32_t i = 0; i < placed_.count; ++i) place(placed_.items[i]);
+  placed_ = ranked_;
+  ranked_.count = 0;
+}
+
+// For as many as may be full in one cycle, after as many that wait.
+bool RadixSortUnit::room_for_blocks() const {
+  const std::size_t n = config_.radix_sort.pairs_per_cycle;
+  return blocks_.ready(round_.last ? 2 * n : 3 * n);
+}
+
+// A digit has two blocks: one may be filled while the other waits.
+bool RadixSortUnit::blocks_take(const Group& group) const {
+  if (!room_for_blocks()) return false;
+  const std::uint32_t size = round_.last ? 4 : pair_size_;
+  const std::uint32_t block = config_.radix_sort.combine_bytes;
+  for (std::uint32_t i = 0; i < group.count; ++i) {
+    const std::uint32_t d = group.items[i].digit;
+    std::uint64_t at = writers_[d].next().value & (block - 1);
+    for (std::uint32_t j = 0; j < i; ++j) at += group.items[j].digit == d ? size : 0;
+    if (waiting_[d] + at / block >= 2) return false;
+  }
+  return true;
 }
 
 // To its place, through the block that gathers its digit's pairs.
-bool RadixSortUnit::place(const Buffer& buffer, std::uint32_t i) {
-  const std::uint32_t d = buffer.digit[i];
-  const std::uint64_t at = buffer.place[i];
+void RadixSortUnit::place(const Item& item) {
+  ++next_counts_[digit(item.code, round_.number + 1)];
   if (!round_.last) {
     std::uint8_t bytes[8];
-    pack_pair(config_, buffer.code[i], buffer.id[i], bytes);
-    return put(writers_[d], Address(round_.to.value + at * pair_size_), Purpose::pairs, bytes,
-               pair_size_);
+    pack_pair(config_, item.code, item.id, bytes);
+    put(item.digit, writers_[item.digit], bytes, pair_size_);
+  } else {
+    put(item.digit, writers_[item.digit], &item.code, 4);
+    put(item.digit, id_writers_[item.digit], &item.id, 4);
   }
-  // Both or none.
-  const Address code_at(round_.to.value + at * 4);
-  const Address id_at(round_.to_ids.value + at * 4);
-  const std::size_t requests = writers_[d].requests_for(4) + id_writers_[d].requests_for(4) +
-                               (writers_[d].next() != code_at && writers_[d].holds()) +
-                               (id_writers_[d].next() != id_at && id_writers_[d].holds());
-  if (!port_.requests.ready(requests)) return false;
-  put(writers_[d], code_at, Purpose::sorted_codes, &buffer.code[i], 4);
-  put(id_writers_[d], id_at, Purpose::sorted_ids, &buffer.id[i], 4);
-  return true;
 }
 
-bool RadixSortUnit::put(BlockWriter& writer, Address at, Purpose purpose, const void* bytes,
+void RadixSortUnit::put(std::uint32_t digit, BlockWriter& writer, const void* bytes,
                         std::uint32_t size) {
-  const bool elsewhere = writer.next() != at;
-  if (!port_.requests.ready(writer.requests_for(size) + (elsewhere && writer.holds())))
-    return false;
-  if (elsewhere) {
-    writer.flush();
-    writer.start(port_, config_.radix_sort.combine_bytes, at, purpose);
+  if (writer.requests_for(size) > 0) {
+    block_digits_.push_back(digit);
+    waiting_[digit] += !round_.last || &writer == &id_writers_[digit];
   }
   writer.put(bytes, size);
-  return true;
 }
 
-// What the digits' blocks still hold, one a cycle.
-bool RadixSortUnit::flush() {
-  while (next_flush_ < 2 * radix_) {
-    const bool ids = next_flush_ >= radix_;
-    if (ids && !round_.last) break;
-    BlockWriter& writer = ids ? id_writers_[next_flush_ - radix_] : writers_[next_flush_];
-    if (writer.holds()) {
-      if (!port_.requests.ready()) {
-        waits_ = kBusWrite;
-        return false;
-      }
-      writer.flush();
-      ++next_flush_;
-      return true;
-    }
-    ++next_flush_;
+// A block a cycle, through a register.
+void RadixSortUnit::hand_on() {
+  if (out_full_ && port_.requests.ready()) {
+    port_.requests.push(out_);
+    out_full_ = false;
   }
-  state_ = State::done;
-  return true;
+  if (out_full_ || !blocks_.valid()) return;
+  out_ = blocks_.pop();
+  out_full_ = true;
+  waiting_[block_digits_.front()] -= out_.purpose != Purpose::sorted_codes;
+  block_digits_.pop_front();
+}
+
+// What a digit's blocks still hold.
+void RadixSortUnit::flush(std::uint32_t digit) {
+  if (writers_[digit].holds()) {
+    writers_[digit].flush();
+    block_digits_.push_back(digit);
+    waiting_[digit] += !round_.last;
+  }
+  if (round_.last && id_writers_[digit].holds()) {
+    id_writers_[digit].flush();
+    block_digits_.push_back(digit);
+    ++waiting_[digit];
+  }
 }
 
 std::string RadixSortUnit::waits_for() const {

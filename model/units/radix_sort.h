@@ -6,15 +6,19 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <vector>
 
 #include "model/config/paper_config.h"
+#include "model/kernel/queue.h"
 #include "model/kernel/unit.h"
 #include "model/system/stream.h"
 #include "model/units/prefix_sum.h"
 
 namespace fasttree::model {
+
+inline constexpr std::uint32_t kMaxPairsPerCycle = 4;
 
 /// Where a round reads and writes.
 struct SortRound {
@@ -42,7 +46,7 @@ class RadixSortUnit : public Unit {
   const std::vector<std::uint32_t>& next_counts() const { return next_counts_; }
 
  private:
-  enum class State { count, offsets, move, flush, done };
+  enum class State { count, offsets, move, drain, flush, finish, done };
   enum class Work { none, scan, scatter };
   struct Buffer {
     std::vector<std::uint8_t> raw;
@@ -52,9 +56,19 @@ class RadixSortUnit : public Unit {
     std::uint32_t want = 0;            ///< bytes of the section; 0: none being fetched
     std::uint32_t count = 0;
   };
+  struct Item {
+    std::uint32_t code = 0, id = 0, place = 0, digit = 0;
+  };
+  /// Pairs that are scattered in one cycle, on their way.
+  struct Group {
+    std::uint32_t count = 0;
+    std::array<Item, kMaxPairsPerCycle> items;
+  };
 
+  bool step();
   bool count_pass();
   bool offsets();
+  void start_writers();
   bool fetch();
   void begin_fetch(Buffer& buffer);
   void unpack(Buffer& buffer);
@@ -62,9 +76,14 @@ class RadixSortUnit : public Unit {
   void send_flags();
   void collect_sums();
   bool scatter();
-  bool place(const Buffer& buffer, std::uint32_t i);
-  bool put(BlockWriter& writer, Address at, Purpose purpose, const void* bytes, std::uint32_t size);
-  bool flush();
+  void choose_work();
+  bool blocks_take(const Group& group) const;
+  bool room_for_blocks() const;
+  void place(const Item& item);
+  void advance();
+  void put(std::uint32_t digit, BlockWriter& writer, const void* bytes, std::uint32_t size);
+  void hand_on();
+  void flush(std::uint32_t digit);
   std::uint32_t digit(std::uint32_t code, std::uint32_t round) const {
     return static_cast<std::uint32_t>(
         std::uint64_t{code} >> (round * config_.radix_sort.radix_bits) & (radix_ - 1));
@@ -81,9 +100,9 @@ class RadixSortUnit : public Unit {
   SortRound round_;
   std::vector<std::uint32_t> counts_, next_counts_;
   std::vector<std::uint32_t> begin_;  ///< a digit: where its next pair goes
-  std::uint32_t offset_section_ = 0;  ///< of the counts, being summed
+  std::uint32_t offset_digits_ = 0;   ///< whose begins are known
+  std::uint32_t offset_ = 0;          ///< of the section of counts
   bool offset_asked_ = false;
-  std::uint32_t offset_ = 0;
   std::array<std::uint8_t, 2 * kMaxRequestBytes> partial_{};  ///< count pass: bytes of pairs
   std::uint32_t partial_bytes_ = 0;
   std::array<Buffer, 2> buffers_;
@@ -92,8 +111,17 @@ class RadixSortUnit : public Unit {
   std::uint32_t asked_digits_ = 0, summed_digits_ = 0;
   std::uint32_t next_pair_ = 0;
   std::uint64_t fetched_pairs_ = 0;
-  std::vector<BlockWriter> writers_;     ///< a digit
-  std::vector<BlockWriter> id_writers_;  ///< a digit, last round
+  Group ranked_, placed_;             ///< registers between the section and the blocks
+  bool reading_ = false;              ///< something was in `ranked_` as the cycle began
+  bool advanced_ = false;             ///< in this cycle
+  bool empty_ = true;                 ///< as the cycle began: no pair, block or request on its way
+  std::vector<BlockWriter> writers_;  ///< a digit
+  std::vector<BlockWriter> id_writers_;     ///< a digit, last round
+  Queue<BusRequest> blocks_;                ///< full ones
+  std::deque<std::uint32_t> block_digits_;  ///< of `blocks_`
+  std::vector<std::uint32_t> waiting_;      ///< a digit: full blocks
+  BusRequest out_;                          ///< a register before the port
+  bool out_full_ = false;
   std::uint32_t next_flush_ = 0;
   std::size_t waits_ = 0;
 };

@@ -26,7 +26,8 @@ module ft_prefix_sum #(
 
   assign in_ready  = gen_stage[0].ready;
   assign out_valid = full[STAGES-1];
-  assign activity  = |move ? ft_pkg::Busy : |full ? ft_pkg::Stalled : ft_pkg::Idle;
+  assign activity  = |move || (out_valid && out_ready) ? ft_pkg::Busy
+                     : |full ? ft_pkg::Stalled : ft_pkg::Idle;
 
   for (genvar s = 0; s < STAGES; s++) begin : gen_stage
     // Rounded so that the level without adders, the first of the down-sweep, falls to a long stage.
