@@ -44,7 +44,7 @@ struct PaperConfig {
   struct PrefixSum {
     std::uint32_t units = 4;
     std::uint32_t section = 32;
-    std::uint32_t stages = 3;
+    std::uint32_t stages = 2;
   };
   struct RadixSort {
     std::uint32_t radix_bits = 4;

@@ -51,6 +51,7 @@ void RadixSortUnit::start(const SortRound& round, const std::vector<std::uint32_
   for (Buffer& buffer : buffers_) buffer.want = buffer.bytes = buffer.count = 0;
   loading_ = working_ = 0;
   work_ = Work::none;
+  flags_made_ = false;
   fetched_pairs_ = 0;
   next_flush_ = 0;
   state_ = own_pass ? State::count : State::offsets;
@@ -227,17 +228,21 @@ void RadixSortUnit::unpack(Buffer& buffer) {
   std::fill(buffer.digit.begin() + buffer.count, buffer.digit.end(), kNoDigit);
 }
 
-// For each digit every unit sums the flags of the pairs with that digit: their ranks. Not while a
-// place is still to be made from the begins, which change now.
+// For each digit every unit sums the flags of the pairs with that digit: their ranks. The flags go
+// through a register. Not while a place is still to be made from the begins, which change now.
 bool RadixSortUnit::scan() {
   bool worked = false;
   if (std::all_of(psus_.begin(), psus_.end(), [](auto* psu) { return psu->valid(); })) {
     collect_sums();
     worked = true;
   }
-  if (asked_digits_ < radix_ && !reading_ &&
+  if (flags_made_ &&
       std::all_of(psus_.begin(), psus_.end(), [](auto* psu) { return psu->ready(); })) {
     send_flags();
+    worked = true;
+  }
+  if (asked_digits_ < radix_ && !reading_ && !flags_made_) {
+    flags_made_ = true;
     worked = true;
   }
   waits_ = reading_ ? kBusWrite : kPrefixSum;
@@ -256,6 +261,7 @@ void RadixSortUnit::send_flags() {
     psus_[p]->push(section);
   }
   ++asked_digits_;
+  flags_made_ = false;
 }
 
 // The units' totals give each the offset that is added to its sums.

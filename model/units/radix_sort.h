@@ -109,6 +109,7 @@ class RadixSortUnit : public Unit {
   std::uint32_t loading_ = 0, working_ = 0;
   Work work_ = Work::none;
   std::uint32_t asked_digits_ = 0, summed_digits_ = 0;
+  bool flags_made_ = false;  ///< of digit `asked_digits_`, not sent yet
   std::uint32_t next_pair_ = 0;
   std::uint64_t fetched_pairs_ = 0;
   Group ranked_, placed_;             ///< registers between the section and the blocks

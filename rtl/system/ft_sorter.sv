@@ -4,7 +4,7 @@ module ft_sorter #(
     parameter int BUS_BYTES = 16,
     parameter int UNITS = 4,       // prefix sum units, a power of two
     parameter int SECTION = 32,    // pairs a unit
-    parameter int STAGES = 3,      // of a prefix sum unit
+    parameter int STAGES = 2,      // of a prefix sum unit
     parameter int RADIX_BITS = 4,
     parameter int COMBINE = 32,    // bytes of a digit's block
     // Units that sum values of 32 bits. The digits' counts go to the first unit; the others see

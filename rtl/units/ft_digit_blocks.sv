@@ -184,18 +184,29 @@ module ft_digit_blocks #(
       second   <= 1'b0;
       head     <= 1'b0;
       tail     <= 1'b0;
-      pending  <= '0;
     end else begin
       if (load || wr_ready) wr_valid <= load;
       if (load && last) second <= !second;
       if (take) head <= !head;
       if (one && !two) tail <= !tail;
-      if (take) pending[ev_row] <= 1'b0;
-      if (accept && complete[0]) pending[rows[0+:RowBits]] <= 1'b1;
-      if (accept && complete[1]) pending[rows[RowBits+:RowBits]] <= 1'b1;
     end
-    if (start) fresh <= '1;
-    else if (take) fresh[ev_digit] <= 1'b0;
+  end
+
+  for (genvar d = 0; d < Radix; d++) begin : gen_fresh
+    always_ff @(posedge clk) begin
+      if (start) fresh[d] <= 1'b1;
+      else if (take && ev_digit == RADIX_BITS'(d)) fresh[d] <= 1'b0;
+    end
+  end
+  for (genvar r = 0; r < 2 * Radix; r++) begin : gen_pending
+    logic set, clear;
+    assign set = accept && ((complete[0] && rows[0+:RowBits] == RowBits'(r))
+                            || (complete[1] && rows[RowBits+:RowBits] == RowBits'(r)));
+    assign clear = rst || (take && ev_row == RowBits'(r));
+    always_ff @(posedge clk) begin
+      if (set) pending[r] <= 1'b1;
+      else if (clear) pending[r] <= 1'b0;
+    end
   end
 
 `ifndef SYNTHESIS

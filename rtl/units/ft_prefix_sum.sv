@@ -6,7 +6,7 @@
 module ft_prefix_sum #(
     parameter int WIDTH = 32,
     parameter int SECTION = 32,        // values, a power of two
-    parameter int STAGES = 3,          // 2 to 2 * log2(SECTION)
+    parameter int STAGES = 2,          // 2 to 2 * log2(SECTION)
     parameter int VALUE_BITS = WIDTH   // of the values; the bits above have to be zero
 ) (
     input  logic                     clk,
@@ -21,6 +21,9 @@ module ft_prefix_sum #(
     output logic [3:0]               activity
 );
   localparam int Levels = 2 * $clog2(SECTION);
+  // Those that make a path long: the root's sum is the total and goes no further, and the first level
+  // of the down-sweep has no adders. So the two levels in the middle go with either neighbour.
+  localparam int Adders = Levels - 2;
 
   logic [STAGES-1:0] full, move;  // `move`: takes what the stage before has, or the input
 
@@ -30,9 +33,12 @@ module ft_prefix_sum #(
                      : |full ? ft_pkg::Stalled : ft_pkg::Idle;
 
   for (genvar s = 0; s < STAGES; s++) begin : gen_stage
-    // Rounded so that the level without adders, the first of the down-sweep, falls to a long stage.
-    localparam int From = (2 * s * Levels + STAGES) / (2 * STAGES);
-    localparam int To = (2 * (s + 1) * Levels + STAGES) / (2 * STAGES);
+    localparam int From = STAGES > Adders ? Levels * s / STAGES
+                          : (2 * Adders * s + STAGES) / (2 * STAGES)
+                            + (Adders * s > Adders / 2 * STAGES ? 2 : 0);
+    localparam int To = STAGES > Adders ? Levels * (s + 1) / STAGES
+                        : (2 * Adders * (s + 1) + STAGES) / (2 * STAGES)
+                          + (Adders * (s + 1) > Adders / 2 * STAGES ? 2 : 0);
     logic [WIDTH*SECTION-1:0] from_before, swept, values;
     logic [WIDTH-1:0] total_in, total_out, total;
     logic ready;

@@ -61,14 +61,14 @@ module ft_radix_sort #(
   state_t state;
 
   logic [RADIX_BITS-1:0] step;    // digits: written begins, summed flags, flushed blocks
-  logic [RADIX_BITS:0] asked;     // digits whose flags the units have
+  logic [RADIX_BITS:0] asked;     // digits whose flags have been made
   logic [31:0] left;              // pairs to be fetched
   logic [PairBits:0] loaded;      // pairs of the section
-  logic fetch, section_full, begins_valid, ask, collect, issue, last_group;
+  logic fetch, section_full, begins_valid, collect, issue, last_group;
 
   // ---- Counts of the digits: of this round until they are summed, then of the next.
   logic [32*Radix-1:0] counts;
-  logic [1:0] counted;
+  logic [1:0] counted;            // what has left the first register in the cycle before
   logic [2*RADIX_BITS-1:0] counted_digits;
   logic clear_counts;
 
@@ -90,7 +90,12 @@ module ft_radix_sort #(
   logic [Lanes*RADIX_BITS-1:0] digits_in;
   logic [Pairs*RADIX_BITS-1:0] digits;
   logic [Pairs-1:0] valid;
-  logic [Pairs*RankBits-1:0] ranks;             // among the pairs of its unit with its digit
+  logic [Pairs-1:0] flags;                      // of the digit that the units see, through a register
+  logic flags_valid, make;
+  logic asking;                                 // in state Ask, from a register of its own
+  // Ranks among the pairs of a unit with the same digit. Bit b of all of them lies together, so that
+  // a pair's is chosen without a multiplication: [Pairs * b + pair].
+  logic [RankBits*Pairs-1:0] ranks;
 
   assign rd_ready     = state == Fetch;
   assign fetch        = rd_valid && rd_ready;
@@ -113,22 +118,27 @@ module ft_radix_sort #(
       if (fetch && beat == PairBits'(p / Lanes)) begin
         digits[RADIX_BITS*p+:RADIX_BITS] <= digits_in[RADIX_BITS*(p%Lanes)+:RADIX_BITS];
       end
+      if (start) flags[p] <= 1'b0;  // no values behind the counts
+      else if (make) flags[p] <= valid[p] && digit == asked[RADIX_BITS-1:0];
       if (start || (issue && last_group)) valid[p] <= 1'b0;
       else if (fetch && beat == PairBits'(p / Lanes)) valid[p] <= present[p%Lanes];
-      if (collect && digit == step) ranks[RankBits*p+:RankBits] <= psu_out_sums[32*p+:RankBits];
+    end
+    for (genvar b = 0; b < RankBits; b++) begin : gen_rank
+      always_ff @(posedge clk) begin
+        if (collect && digit == step) ranks[Pairs*b+p] <= psu_out_sums[32*p+b];
+      end
     end
     // To the units: flags, or before the first section the counts to the first of them.
     if (p < Radix) begin : gen_values
-      assign psu_in_values[32*p+:32] =
-          state == Ask ? counts[32*p+:32] : {31'd0, valid[p] && digit == asked[RADIX_BITS-1:0]};
+      assign psu_in_values[32*p+:32] = asking ? counts[32*p+:32] : {31'd0, flags[p]};
     end else begin : gen_flag
-      assign psu_in_values[32*p+:32] =
-          {31'd0, state != Ask && valid[p] && digit == asked[RADIX_BITS-1:0]};
+      assign psu_in_values[32*p+:32] = {31'd0, flags[p]};
     end
   end
 
   // The section's pairs, each with its digit.
   logic [GroupBits-1:0] group;                  // the next to be scattered
+  logic [GroupBits-1:0] final_group;            // of the section
   logic [Columns*ItemBits-1:0] row_items;
 
   for (genvar c = 0; c < Columns; c++) begin : gen_column
@@ -156,15 +166,15 @@ module ft_radix_sort #(
   logic [RADIX_BITS-1:0] add_digit;
   logic [PairBits:0] add_count;
 
-  assign psu_in_valid  = {{(UNITS - 1) {ask && state == Scan}}, ask};
+  assign psu_in_valid  = {{(UNITS - 1) {flags_valid}}, flags_valid || asking};
   assign psu_out_ready = {{(UNITS - 1) {state == Scan}},
                           state == Scan || (state == Bases && step == RADIX_BITS'(Radix - 1))};
   assign begins_valid  = state == Bases && psu_out_valid[0];
   // No place may be on its way from a begin that changes.
   logic reading;
-  assign ask     = state == Ask || (state == Scan && !asked[RADIX_BITS] && !reading);
+  assign make    = state == Scan && !asked[RADIX_BITS] && !reading && (!flags_valid || psu_in_ready[0]);
   assign collect = state == Scan && psu_out_valid[0];
-  assign clear_counts = state == Ask && psu_in_ready[0];
+  assign clear_counts = asking && psu_in_ready[0];
 
   for (genvar u = 0; u < UNITS; u++) begin : gen_rest
     logic [PairBits:0] own, rest;               // pairs of the digit in this unit; and those behind it
@@ -190,7 +200,7 @@ module ft_radix_sort #(
   assign reading    = |a_valid;
   assign advance    = b_valid == '0 || blocks_ready;
   assign issue      = state == Scatter && advance;
-  assign last_group = {1'b0, group, 1'b0} + (PairBits + 1)'(2) >= loaded;
+  assign last_group = group == final_group;
 
   // ---- Where the next section's pairs of a digit begin.
   logic [31:0] begins[0:Radix-1];
@@ -211,15 +221,24 @@ module ft_radix_sort #(
   for (genvar k = 0; k < 2; k++) begin : gen_move
     logic [ItemBits-1:0] item;
     logic [RADIX_BITS-1:0] digit;
+    logic [RankBits-1:0] rank;
     logic [UNITS*(PairBits+1)-1:0] digit_rests;
+    logic [PairBits:0] rest;
     logic [RADIX_BITS-1:0] next_digit;
 
-    if (Columns == 2) begin : gen_column
-      assign item = row_items[ItemBits*k+:ItemBits];
-    end else begin : gen_columns
-      assign item = row_items[ItemBits*(2*32'(group[GroupBits-RowBits-1:0])+k)+:ItemBits];
+    always_comb begin
+      item = row_items[ItemBits*k+:ItemBits];
+      for (int c = 2; c < Columns; c += 2) begin
+        if (32'(group) % (Columns / 2) == c / 2) item = row_items[ItemBits*(c+k)+:ItemBits];
+      end
     end
     assign digit = item[64+:RADIX_BITS];
+
+    for (genvar b = 0; b < RankBits; b++) begin : gen_rank
+      logic [Pairs-1:0] plane;
+      assign plane   = ranks[Pairs*b+:Pairs];
+      assign rank[b] = plane[{group, 1'(k)}];
+    end
 
     // A copy for each of the two pairs: a LUT RAM has one port to read.
     for (genvar u = 0; u < UNITS; u++) begin : gen_unit
@@ -229,18 +248,23 @@ module ft_radix_sort #(
       end
       assign digit_rests[(PairBits+1)*u+:PairBits+1] = unit_rests[digit];
     end
+    always_comb begin
+      rest = digit_rests[PairBits:0];
+      for (int u = 1; u < UNITS; u++) begin
+        if (32'(group) >> (RankBits - 1) == u) rest = digit_rests[(PairBits+1)*u+:PairBits+1];
+      end
+    end
 
     always_ff @(posedge clk) begin
+      counted_digits[RADIX_BITS*k+:RADIX_BITS] <= next_digit;
       if (advance) begin
         a_items[64*k+:64]                      <= item[63:0];
         a_digits[RADIX_BITS*k+:RADIX_BITS]     <= digit;
-        a_ranks[RankBits*k+:RankBits]          <= ranks[RankBits*(2*32'(group)+k)+:RankBits];
-        a_rests[(PairBits+1)*k+:PairBits+1]    <=
-            digit_rests[(PairBits+1)*(32'(group)>>(RankBits-1))+:PairBits+1];
+        a_ranks[RankBits*k+:RankBits]          <= rank;
+        a_rests[(PairBits+1)*k+:PairBits+1]    <= rest;
         b_items[64*k+:64]                      <= a_items[64*k+:64];
         b_digits[RADIX_BITS*k+:RADIX_BITS]     <= a_digits[RADIX_BITS*k+:RADIX_BITS];
         b_places[32*k+:32]                     <= places[32*k+:32];
-        counted_digits[RADIX_BITS*k+:RADIX_BITS] <= next_digit;
       end
     end
     assign places[32*k+:32] = begins[a_digits[RADIX_BITS*k+:RADIX_BITS]]
@@ -254,7 +278,6 @@ module ft_radix_sort #(
       end
     end
   end
-  assign counted = advance ? b_valid : '0;
 
   // ---- Blocks.
   logic blocks_empty, flush_ready;
@@ -281,14 +304,19 @@ module ft_radix_sort #(
     add_valid <= collect && !rst;
     add_digit <= step;
     add_count <= gen_rest[0].rest;
+    counted   <= advance ? a_valid : '0;
+    // The scan leaves time for it.
+    final_group <= GroupBits'((loaded - 1'b1) >> 1);
+    flags_valid <= !rst && (make || (flags_valid && !psu_in_ready[0]));
     if (rst) begin
       state   <= Idle;
+      asking  <= 1'b0;
       a_valid <= '0;
       b_valid <= '0;
     end else begin
       if (advance) begin
         b_valid <= a_valid;
-        a_valid <= {issue && {1'b0, group, 1'b1} < loaded, issue};
+        a_valid <= {issue && !(last_group && loaded[0]), issue};
       end
       unique case (state)
         Idle: begin
@@ -298,11 +326,16 @@ module ft_radix_sort #(
           group  <= '0;
           loaded <= '0;
           if (start) begin
-            state <= Ask;
-            left  <= pairs;
+            state  <= Ask;
+            asking <= 1'b1;
+            left   <= pairs;
           end
         end
-        Ask: if (psu_in_ready[0]) state <= Bases;
+        Ask:
+        if (psu_in_ready[0]) begin
+          state  <= Bases;
+          asking <= 1'b0;
+        end
         Bases:
         if (begins_valid) begin
           step <= step + 1'b1;
@@ -316,7 +349,7 @@ module ft_radix_sort #(
           if (section_full) state <= Scan;
         end
         Scan: begin
-          if (ask && psu_in_ready[0]) asked <= asked + 1'b1;
+          if (make) asked <= asked + 1'b1;
           if (collect) step <= step + 1'b1;
           if (collect && last_step) begin
             state <= Scatter;
@@ -348,7 +381,7 @@ module ft_radix_sort #(
       Ask:     activity = psu_in_ready[0] ? ft_pkg::Busy : ft_pkg::Stalled + PrefixSum;
       Bases:   activity = psu_out_valid[0] ? ft_pkg::Busy : ft_pkg::Stalled + PrefixSum;
       Fetch:   activity = rd_valid ? ft_pkg::Busy : ft_pkg::Stalled + BusRead;
-      Scan:    activity = collect || (ask && psu_in_ready[0]) ? ft_pkg::Busy
+      Scan:    activity = collect || make || (flags_valid && psu_in_ready[0]) ? ft_pkg::Busy
                           : ft_pkg::Stalled + (reading ? BusWrite : PrefixSum);
       Scatter: activity = issue ? ft_pkg::Busy : ft_pkg::Stalled + BusWrite;
       Drain:   activity = drained ? ft_pkg::Busy : ft_pkg::Stalled + BusWrite;
