@@ -319,7 +319,8 @@ bool RadixSortUnit::room_for_blocks() const {
   return blocks_.ready(round_.last ? 2 * n : 3 * n);
 }
 
-// A digit has two blocks: one may be filled while the other waits.
+// A digit has two blocks: one may be filled while the other waits. Where a cycle's pairs fill more
+// than that by themselves, none may wait.
 bool RadixSortUnit::blocks_take(const Group& group) const {
   if (!room_for_blocks()) return false;
   const std::uint32_t size = round_.last ? 4 : pair_size_;
@@ -328,7 +329,7 @@ bool RadixSortUnit::blocks_take(const Group& group) const {
     const std::uint32_t d = group.items[i].digit;
     std::uint64_t at = writers_[d].next().value & (block - 1);
     for (std::uint32_t j = 0; j < i; ++j) at += group.items[j].digit == d ? size : 0;
-    if (waiting_[d] + at / block >= 2) return false;
+    if (waiting_[d] > 0 && waiting_[d] + at / block >= 2) return false;
   }
   return true;
 }

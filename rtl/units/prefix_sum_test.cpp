@@ -115,13 +115,13 @@ constexpr std::pair<unsigned, unsigned> kPressures[] = {
     {100, 100}, {100, 30}, {30, 100}, {60, 60}, {95, 90}};
 
 TEST(RtlPrefixSum, IsTheModelsInEveryCycle) {
-  for (const auto& [in, out] : kPressures) like_the_model<Vprefix_sum>({}, 5000, in, out);
+  for (const auto& [in, out] : kPressures) like_the_model<Vprefix_sum>({}, 40000, in, out);
 }
 
 TEST(RtlPrefixSum, IsTheModelsForMoreStagesUpToOneALevel) {
   for (const auto& [in, out] : kPressures) {
-    like_the_model<Vprefix_sum_3>({.stages = 3}, 2000, in, out);
-    like_the_model<Vprefix_sum_10>({.stages = 10}, 1500, in, out);
+    like_the_model<Vprefix_sum_3>({.stages = 3}, 20000, in, out);
+    like_the_model<Vprefix_sum_10>({.stages = 10}, 15000, in, out);
   }
 }
 
@@ -133,7 +133,7 @@ TEST(RtlPrefixSum, IsTheModelsForShortSectionsOfNarrowValues) {
 
 TEST(RtlPrefixSum, SumsFlagsWhereItIsBuiltForNothingElse) {
   for (const auto& [in, out] : kPressures) {
-    like_the_model<Vprefix_sum_flags>({.value_bits = 1}, 3000, in, out);
+    like_the_model<Vprefix_sum_flags>({.value_bits = 1}, 20000, in, out);
   }
   Bench<Vprefix_sum_flags> bench;
   for (std::size_t i = 0; i < 32; ++i) set_word(bench.unit.in_values, i, i == 17 ? 2 : 1);
@@ -148,7 +148,7 @@ TEST(RtlPrefixSum, TheWholeSweepIsTheSerialSum) {
   Vprefix_sum_sweep sweep(&context);
   std::mt19937 random(1);
   std::vector<std::uint32_t> values(32);
-  for (int run = 0; run < 40000; ++run) {
+  for (int run = 0; run < 400000; ++run) {
     const std::uint32_t mask = ~std::uint32_t{0} >> random() % 32;
     for (std::size_t i = 0; i < values.size(); ++i) {
       values[i] = random() & mask;

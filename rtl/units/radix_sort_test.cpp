@@ -135,6 +135,7 @@ References random_round(Sorter<Model>& sorter, const References& list, std::uint
   std::vector<std::uint8_t> main_writes(from.size()), ids_writes(from.size());
   sorter.start(list, round, last, round == 0);
   std::size_t at = 0;
+  model::BusRequest waiting;
   for (int cycle = 0; !unit.done; ++cycle) {
     if (cycle > 2000000) {
       ADD_FAILURE() << "does not end";
@@ -146,6 +147,17 @@ References random_round(Sorter<Model>& sorter, const References& list, std::uint
     unit.wr_ready = sorter.bench.chance(write_percent);
     sorter.bench.settle();
     const bool read = unit.rd_valid && unit.rd_ready;
+    if (waiting.bytes > 0) {
+      // What was shown and not taken stays.
+      EXPECT_TRUE(unit.wr_valid);
+      const model::BusRequest still = sorter.request();
+      EXPECT_EQ(still.address, waiting.address);
+      EXPECT_EQ(still.bytes, waiting.bytes);
+      EXPECT_TRUE(
+          std::equal(still.data.begin(), still.data.begin() + still.bytes, waiting.data.begin()));
+    }
+    waiting.bytes = 0;
+    if (unit.wr_valid && !unit.wr_ready) waiting = sorter.request();
     if (unit.wr_valid && unit.wr_ready) {
       const model::BusRequest request = sorter.request();
       const bool to_ids = last && request.address.value >= kIds;
