@@ -16,10 +16,7 @@ namespace fasttree::rtl {
 template <typename Model>
 class Bench {
  public:
-  explicit Bench(std::uint32_t seed = 1) : random_(seed), unit(&context_) {
-    context_.randReset(2);
-    context_.randSeed(static_cast<int>(seed));
-    context_.fatalOnError(false);
+  explicit Bench(std::uint32_t seed = 1) : context_(seed), random_(seed), unit(&context_) {
     reset();
   }
   ~Bench() { unit.final(); }
@@ -53,7 +50,15 @@ class Bench {
   int failed_assertions() const { return context_.errorCount(); }
 
  private:
-  VerilatedContext context_;
+  /// Set before the unit is made, whose registers begin at random.
+  struct Context : VerilatedContext {
+    explicit Context(std::uint32_t seed) {
+      randReset(2);
+      randSeed(static_cast<int>(seed));
+      fatalOnError(false);
+    }
+  };
+  Context context_;
   std::mt19937 random_;
   std::uint64_t cycles_ = 0;
 
