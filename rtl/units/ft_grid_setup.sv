@@ -41,27 +41,27 @@ module ft_grid_setup (
   logic aligned, normal, round_up;
   logic [30:0] rounded;
 
-  assign lo_axis = axis[1] ? lo[95:64] : axis[0] ? lo[63:32] : lo[31:0];
-  assign hi_axis = axis[1] ? hi[95:64] : axis[0] ? hi[63:32] : hi[31:0];
-  assign swap    = lo_axis[30:0] > hi_axis[30:0];
-  assign larger  = swap ? lo_axis : hi_axis;
-  assign smaller = swap ? hi_axis : lo_axis;
-  assign gap     = sum_exponent - addend_exponent;
+  assign lo_axis  = axis[1] ? lo[95:64] : axis[0] ? lo[63:32] : lo[31:0];
+  assign hi_axis  = axis[1] ? hi[95:64] : axis[0] ? hi[63:32] : hi[31:0];
+  assign swap     = lo_axis[30:0] > hi_axis[30:0];
+  assign larger   = swap ? lo_axis : hi_axis;
+  assign smaller  = swap ? hi_axis : lo_axis;
+  assign gap      = sum_exponent - addend_exponent;
   // Only the sticky bit is left: that stays, however far it is shifted.
-  assign aligned = gap == '0 || addend[26:1] == '0;
-  assign normal  = !sum[27] && (sum[26] || sum_exponent == 8'd1 || sum == '0);
+  assign aligned  = gap == '0 || addend[26:1] == '0;
+  assign normal   = !sum[27] && (sum[26] || sum_exponent == 8'd1 || sum == '0);
   assign round_up = sum[2] && (sum[3] || sum[1] || sum[0]);
-  assign rounded = {sum[26] ? sum_exponent : 8'd0, &sum_exponent ? 23'd0 : sum[25:3]}
-                 + 31'(round_up && !(&sum_exponent));
+  assign rounded  = {sum[26] ? sum_exponent : 8'd0, &sum_exponent ? 23'd0 : sum[25:3]}
+                  + 31'(round_up && !(&sum_exponent));
 
   always_ff @(posedge clk) begin
     case (state)
       Load: begin
-        sum            <= {1'b0, larger[30:23] != '0, larger[22:0], 3'd0};
+        sum             <= {1'b0, larger[30:23] != '0, larger[22:0], 3'd0};
         addend          <= {smaller[30:23] != '0, smaller[22:0], 3'd0};
-        sum_exponent   <= larger[30:23] == '0 ? 8'd1 : larger[30:23];
+        sum_exponent    <= larger[30:23] == '0 ? 8'd1 : larger[30:23];
         addend_exponent <= smaller[30:23] == '0 ? 8'd1 : smaller[30:23];
-        add            <= larger[31] != smaller[31];
+        add             <= larger[31] != smaller[31];
       end
       Align: begin
         if (aligned) begin
@@ -138,13 +138,14 @@ module ft_grid_setup (
   // --- 2^15 / extent. Of the mantissa m, 1 < m < 2, it is 2 / m, which is no tie and does not round
   // up to 2; of m = 1 it is 1 / m.
   logic [4:0] step;
-  logic [24:0] rest, less;            // less than twice the divisor
+  logic [24:0] rest;                  // less than twice the divisor
+  logic [25:0] less;
   logic [24:0] quotient;
   logic fits, power_of_two;
 
   assign power_of_two = axis_extent[22:0] == '0;
-  assign less         = rest - {2'b01, axis_extent[22:0]};
-  assign fits         = rest >= {2'b01, axis_extent[22:0]};
+  assign less         = {1'b0, rest} - {3'b001, axis_extent[22:0]};
+  assign fits         = less[25:24] == '0;
 
   always_ff @(posedge clk) begin
     if (step == '0) rest <= {!power_of_two, power_of_two, 23'd0};
