@@ -155,8 +155,8 @@ constexpr Rates kRates[] = {{100, 100}, {100, 30}, {30, 100}, {60, 60}, {95, 10}
 TYPED_TEST(RtlSceneReader, BringsEveryCoordinateToTheBounds) {
   TypeParam reader(1);
   for (const Rates& rates : kRates) {
-    for (std::uint32_t triangles = 0; triangles < 60; ++triangles) {
-      const auto scene = reader.random_scene(triangles < 40 ? triangles : triangles * 20);
+    for (std::uint32_t triangles = 0; triangles < 45; ++triangles) {
+      const auto scene = reader.random_scene(triangles < 40 ? triangles : triangles * 10);
       reader.run(true, scene, rates);
       reader.expect_all_values(scene);
       EXPECT_EQ(reader.bench.unit.bad, 0);
@@ -169,8 +169,8 @@ TYPED_TEST(RtlSceneReader, BringsEveryCoordinateToTheBounds) {
 TYPED_TEST(RtlSceneReader, BringsTrianglesToTheUnitsInTurn) {
   TypeParam reader(2);
   for (const Rates& rates : kRates) {
-    for (std::uint32_t triangles = 0; triangles < 60; ++triangles) {
-      const auto scene = reader.random_scene(triangles < 40 ? triangles : triangles * 20);
+    for (std::uint32_t triangles = 0; triangles < 45; ++triangles) {
+      const auto scene = reader.random_scene(triangles < 40 ? triangles : triangles * 10);
       reader.run(false, scene, rates);
       ASSERT_EQ(reader.taken, scene);
     }
@@ -226,6 +226,7 @@ std::uint64_t model_cycles(bool bounds, std::uint32_t triangles, std::uint32_t b
                            std::uint32_t inputs) {
   model::PaperConfig config;
   config.bus.bytes = bus_words * 4;
+  config.bus.read_ahead_bytes = 4096;  // enough for a wide bus, too
   config.scene_bound.inputs = inputs;
   model::test::UnitBench bench(config);
   model::SceneReader reader(config, bench.bus.add_port("scene"));
