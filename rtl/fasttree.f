@@ -23,3 +23,6 @@ system/ft_bus.sv
 units/ft_digit_blocks.sv
 units/ft_radix_sort.sv
 system/ft_sorter.sv
+units/ft_scene_reader.sv
+units/ft_scene_bound.sv
+units/ft_grid_setup.sv

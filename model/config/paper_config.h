@@ -87,7 +87,7 @@ struct PaperConfig {
   };
   struct Control {
     std::uint32_t step_cycles = 8;
-    std::uint32_t setup_cycles = 64;
+    std::uint32_t setup_cycles = 101;
     std::uint32_t memory_mbytes = 1024;
     std::uint32_t stuck_cycles = 20000;
     bool count_host = false;
