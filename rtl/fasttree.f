@@ -8,3 +8,17 @@ units/ft_plane.sv
 units/ft_split_plane.sv
 units/ft_internal_node.sv
 units/ft_leaf_node.sv
+system/ft_registers.sv
+system/ft_control.sv
+units/ft_lru.sv
+units/ft_mark_cache.sv
+units/ft_bit_encoding.sv
+units/ft_path_compression.sv
+system/ft_window.sv
+system/ft_write_port.sv
+system/ft_write_order.sv
+system/ft_stream_reader.sv
+system/ft_block_reader.sv
+system/ft_axi_rules.sv
+system/ft_bus_writes.sv
+system/ft_bus.sv

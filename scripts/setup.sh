@@ -15,7 +15,7 @@ cd "$(dirname "$0")/.."
 
 build=(g++ cmake ninja-build pkg-config libtbb-dev libhwy-dev libxxhash-dev libfmt-dev
        libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libfast-float-dev libstb-dev
-       libembree-dev libsdl2-dev verilator ca-certificates curl jq)
+       libembree-dev libsdl2-dev zlib1g-dev verilator ca-certificates curl jq)
 test=(libgtest-dev librapidcheck-dev libtinyobjloader-dev)
 ci=(clang-14 libclang-rt-14-dev clang-format gcovr libbenchmark-dev yosys z3 qflow-tech-osu018)
 

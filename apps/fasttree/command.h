@@ -80,6 +80,7 @@ std::unique_ptr<Command> make_animate_command();
 std::unique_ptr<Command> make_view_command();
 std::unique_ptr<Command> make_memory_command();
 std::unique_ptr<Command> make_simulate_command();
+std::unique_ptr<Command> make_diff_command();
 std::unique_ptr<Command> make_explore_command();
 std::unique_ptr<Command> make_reproduce_command();
 

@@ -3,6 +3,7 @@
 // of every cycle and byte.
 #include "model/report/simulate.h"
 
+#include <charconv>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -21,6 +22,7 @@
 #include "options.h"
 #include "output.h"
 #include "progress.h"
+#include "rtl/engine/rtl_machine.h"
 #include "simulate_report.h"
 
 namespace fasttree::app {
@@ -36,18 +38,21 @@ constexpr std::uint32_t kPageWindows = 400;
 class SimulateCommand : public Command {
  public:
   const char* name() const override { return "simulate"; }
-  const char* summary() const override { return "Build a tree on a model of the accelerator"; }
+  const char* summary() const override { return "Build a tree on the accelerator: model or RTL"; }
   const char* details() const override {
     return "Runs a scene through the machine of a configuration, cycle by cycle: the machine of "
            "the\n"
            "paper (paper-fpga, paper-asic65, paper-asic28) or fasttree-2, ours. Says for how many\n"
            "cycles each unit was busy, stalled and on whom, and idle, and what went to memory and\n"
            "back. No key of a configuration changes the tree but those of the grid (axes, "
-           "depth).\n\n"
+           "depth).\n"
+           "--engine rtl runs the SystemVerilog instead, through Verilator, with the same reports\n"
+           "and a memory of the same timing; --wave writes its waveforms.\n\n"
            "Example:\n"
            "  fasttree simulate bunny.ply --config paper-asic65 --verify --html bunny.html\n"
            "  fasttree simulate bunny.ply --config paper-asic65 --set "
            "paper.bus_bytes_per_cycle=32\n"
+           "  fasttree simulate bunny.ply --config paper-fpga --engine rtl --wave 1000:3000\n"
            "  fasttree simulate --config fasttree-2 --print-config";
   }
 
@@ -55,6 +60,10 @@ class SimulateCommand : public Command {
     options.positional(scene_, "SCENE", "A mesh file, or scene:NAME", false);
     options.text(config_, "--config", "NAME|FILE", "The machine: a name, or a TOML file");
     options.texts(set_, "--set", "SECTION.KEY=VALUE", "Change a key; may be given again");
+    options.choice(rtl_, "--engine", "What runs: the cycle-level model, or the RTL",
+                   Choices<bool>{{"model", false}, {"rtl", true}});
+    options.text(wave_, "--wave", "FROM:TO", "Write waveforms of these cycles (engine rtl)");
+    options.text(wave_file_, "--wave-file", "FILE", "Where to: FST, which GTKWave opens");
     options.flag(list_, "--list-configs", "Name the configurations, and stop");
     options.flag(print_, "--print-config",
                  "Print the configuration as TOML, with what each key means, and stop");
@@ -72,6 +81,8 @@ class SimulateCommand : public Command {
     if (list_) return list(context);
     model::SimulationReport report;
     report.config = configuration();
+    report.engine = rtl_ ? "rtl" : "model";
+    const rtl::RtlOptions rtl_options = waves();
     if (print_) {
       context.output.write(to_toml(report.config));
       return kDone;
@@ -80,7 +91,7 @@ class SimulateCommand : public Command {
 
     const LoadedScene scene = load_scene(context, scene_, most_of_memory());
     report.scene = scene.mesh.name;
-    simulate(context, scene.view, report);
+    simulate(context, scene.view, rtl_options, report);
     if (verify_) {
       report.compared = true;
       report.difference = take(first_difference(scene.view, report.config, report.result,
@@ -93,6 +104,7 @@ class SimulateCommand : public Command {
       check(save_tree(report.result.tree, out_));
       context.output.line("saved                {}", out_);
     }
+    if (!wave_.empty()) context.output.line("waveforms            {}", wave_file_);
     write(context.output, csv_, model::report_csv, report);
     write(context.output, timeline_, model::timeline_json, report);
     write(context.output, html_, model::html_report, report);
@@ -107,7 +119,31 @@ class SimulateCommand : public Command {
     return config;
   }
 
-  void simulate(Context& context, const MeshView& mesh, model::SimulationReport& report) const {
+  // "FROM:TO", cycles of the build; either may be left out.
+  rtl::RtlOptions waves() const {
+    rtl::RtlOptions options;
+    if (wave_.empty()) return options;
+    if (!rtl_) throw Failure{kUsage, "--wave is for --engine rtl: the model has no waveforms"};
+    const std::size_t colon = wave_.find(':');
+    const auto read = [&](const std::string& text, std::uint64_t& value) {
+      if (text.empty()) return;
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+      if (error != std::errc() || end != text.data() + text.size()) wrong_wave();
+    };
+    if (colon == std::string::npos) wrong_wave();
+    read(wave_.substr(0, colon), options.wave_from);
+    read(wave_.substr(colon + 1), options.wave_to);
+    if (options.wave_from >= options.wave_to) wrong_wave();
+    options.wave_file = wave_file_;
+    return options;
+  }
+  [[noreturn]] void wrong_wave() const {
+    throw Failure{kUsage, "--wave " + wave_ + " is not FROM:TO, two cycles of the build, the first " +
+                              "less than the second, such as 1000:3000"};
+  }
+
+  void simulate(Context& context, const MeshView& mesh, const rtl::RtlOptions& rtl_options,
+                model::SimulationReport& report) const {
     model::SimulationOptions options;
     options.keep_arrays = verify_;
     options.timeline_windows = !timeline_.empty() ? kTraceWindows
@@ -116,7 +152,8 @@ class SimulateCommand : public Command {
     options.max_cycles = max_cycles_;
     options.progress = context.progress.callback("simulating:");
     const auto start = std::chrono::steady_clock::now();
-    report.result = take(model::simulate(mesh, report.config, options));
+    report.result = take(rtl_ ? rtl::simulate_rtl(mesh, report.config, options, rtl_options)
+                              : model::simulate(mesh, report.config, options));
     report.wall_s = milliseconds_since(start) / 1000;
     stop_if_cancelled();
   }
@@ -159,6 +196,9 @@ class SimulateCommand : public Command {
   std::string scene_;
   std::string config_ = "paper-asic65";
   std::vector<std::string> set_;
+  bool rtl_ = false;
+  std::string wave_;
+  std::string wave_file_ = "fasttree.fst";
   bool list_ = false;
   bool print_ = false;
   bool verify_ = false;

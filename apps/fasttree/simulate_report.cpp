@@ -31,6 +31,8 @@ void print_headline(Output& output, const SimulationReport& report) {
               r.memory_traits.peak_gb_s > 0
                   ? fmt::format(" ({:.1f} GB/s peak)", r.memory_traits.peak_gb_s)
                   : "");
+  output.line("engine               {}",
+              report.engine == "rtl" ? "RTL (SystemVerilog, verilated)" : "cycle-level model");
   output.line("cycles               {}{}", with_commas(r.cycles),
               r.triangles > 0 ? fmt::format(", {:.2f} a triangle", cycles_per_triangle(r)) : "");
   output.line("time                 {:.4f} ms, {:.1f} frames a second", r.time_ms(),

@@ -133,6 +133,7 @@ ordered_json report_json(const SimulationReport& report) {
   ordered_json json;
   json["scene"] = report.scene;
   json["config"] = result.config;
+  json["engine"] = report.engine;
   json["architecture"] = report.config.architecture;
   json["clock_mhz"] = result.clock_mhz;
   json["triangles"] = result.triangles;

@@ -57,10 +57,13 @@ struct CacheStatistics {
 /// The arrays between the steps, as found in the model's memory; for comparison with the
 /// reference's. Filled only when asked for.
 struct IntermediateArrays {
+  Box3 bounds;
   std::vector<std::uint32_t> unsorted_codes, unsorted_ids;
   std::vector<std::uint32_t> sorted_codes, sorted_ids;
   std::vector<std::uint32_t> leaf_codes, leaf_first, leaf_count;
   std::vector<std::uint32_t> mark_words;
+  std::vector<std::uint32_t> node_words;  ///< four a node: lower, upper, split plane, axis
+  std::uint32_t root = 0;                 ///< a child, as in the device image
 };
 
 struct SimulationResult {
@@ -77,6 +80,7 @@ struct SimulationResult {
   MemoryTraits memory_traits;
   MemoryStatistics memory;
   Tree tree;
+  std::string broken_tree;  ///< SimulationOptions::keep_broken: why `tree` is empty
   IntermediateArrays arrays;
 
   double time_ms() const;
@@ -85,6 +89,8 @@ struct SimulationResult {
 /// How to run: what to keep, and a callback for progress and cancelling (false cancels).
 struct SimulationOptions {
   bool keep_arrays = false;
+  /// What the machine left may not form a tree: give the result with its arrays all the same.
+  bool keep_broken = false;
   std::uint32_t timeline_windows = 400;  ///< about so many samples; 0: none
   std::function<bool(const char* stage, double fraction)> progress;
   std::uint64_t max_cycles = 0;  ///< 0: no limit; a run past it ends with resource_limit

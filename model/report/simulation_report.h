@@ -15,6 +15,7 @@ namespace fasttree::model {
 struct SimulationReport {
   std::string scene;
   MachineConfig config;
+  std::string engine = "model";  ///< or "rtl"
   SimulationResult result;
   double wall_s = 0;  ///< that the simulation took
   /// Whether the run was compared with the reference builder, and the first difference.

@@ -21,7 +21,8 @@ GlobalControl::GlobalControl(const PaperConfig& config, PaperUnits& units,
       hooks_(hooks),
       expected_cycles_(std::max<std::uint64_t>(expected_cycles, 1)),
       all_(units.all()),
-      timeline_(options.timeline_windows, all_, units.bus) {}
+      timeline_(options.timeline_windows, {all_.begin(), all_.end()},
+                [&bus = units.bus] { return bus.moved_bytes(); }) {}
 
 void GlobalControl::begin_stage(const char* name) {
   stages_.emplace_back();

@@ -72,9 +72,16 @@ void read_pairs(const ByteStore& store, const PaperConfig& config, Address pairs
   }
 }
 
-void read_arrays(const ByteStore& store, const MemoryMap& map, const Grid& grid,
-                 const MachineRegisters& registers, const MarkCache& cache,
-                 IntermediateArrays& arrays) {
+std::vector<std::uint8_t> read_marks(const ByteStore& store, const MemoryMap& map,
+                                     const Grid& grid) {
+  const std::size_t words = ((std::size_t{1} << (grid.depth() + 1)) + 31) / 32;
+  std::vector<std::uint8_t> marks(words * 4);
+  store.read(map.marks, marks.data(), marks.size());
+  return marks;
+}
+
+void read_arrays(const ByteStore& store, const MemoryMap& map, const MachineRegisters& registers,
+                 const std::vector<std::uint8_t>& marks, IntermediateArrays& arrays) {
   arrays.sorted_codes = read_words(store, map.sorted_codes, registers.references);
   arrays.sorted_ids = read_words(store, map.sorted_ids, registers.references);
   arrays.leaf_codes = read_words(store, map.leaf_codes, registers.leaves);
@@ -86,12 +93,10 @@ void read_arrays(const ByteStore& store, const MemoryMap& map, const Grid& grid,
     arrays.leaf_first[j] = rows[2 * j];
     arrays.leaf_count[j] = rows[2 * j + 1];
   }
-  // One bit a node of the complete tree.
-  const std::size_t words = ((std::size_t{1} << (grid.depth() + 1)) + 31) / 32;
-  std::vector<std::uint8_t> marks(words * 4);
-  store.read(map.marks, marks.data(), marks.size());
-  cache.copy_dirty(map.marks, marks);
-  arrays.mark_words.resize(words);
+  const std::uint64_t nodes = registers.leaves > 0 ? registers.leaves - 1 : 0;
+  arrays.node_words = read_words(store, map.nodes, nodes * sizeof(DeviceInternalNode) / 4);
+  arrays.root = registers.root;
+  arrays.mark_words.resize(marks.size() / 4);
   std::memcpy(arrays.mark_words.data(), marks.data(), marks.size());
 }
 

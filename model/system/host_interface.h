@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "fasttree/device_image.h"
 #include "fasttree/mesh.h"
@@ -13,7 +14,6 @@
 #include "model/memory/byte_store.h"
 #include "model/report/simulation.h"
 #include "model/system/memory_map.h"
-#include "model/units/mark_cache.h"
 
 namespace fasttree::model {
 
@@ -40,10 +40,13 @@ struct MachineRegisters {
 DeviceImage read_image(const ByteStore& store, const MemoryMap& map, const Grid& grid,
                        std::uint32_t triangles, const MachineRegisters& registers);
 
-/// The arrays after the sort. The pairs before it have to be read before the sort reuses memory.
-void read_arrays(const ByteStore& store, const MemoryMap& map, const Grid& grid,
-                 const MachineRegisters& registers, const MarkCache& cache,
-                 IntermediateArrays& arrays);
+/// The marks of all nodes of the complete tree, a bit each, as memory has them.
+std::vector<std::uint8_t> read_marks(const ByteStore& store, const MemoryMap& map,
+                                     const Grid& grid);
+/// The arrays after the sort; the marks with what only the cache had. The pairs before the sort
+/// have to be read before it reuses their memory.
+void read_arrays(const ByteStore& store, const MemoryMap& map, const MachineRegisters& registers,
+                 const std::vector<std::uint8_t>& marks, IntermediateArrays& arrays);
 void read_pairs(const ByteStore& store, const PaperConfig& config, Address pairs,
                 std::uint64_t references, IntermediateArrays& arrays);
 

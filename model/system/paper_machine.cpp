@@ -226,11 +226,14 @@ Result<SimulationResult> simulate_paper(const MeshView& mesh, const MachineConfi
                 registers.references * 4 + std::uint64_t{registers.leaves} *
                                                (sizeof(DeviceLeaf) + sizeof(DeviceInternalNode)));
   if (options.keep_arrays) {
-    read_arrays(store, map.value(), run.grid(), registers, units.mark_cache, result.arrays);
+    std::vector<std::uint8_t> marks = read_marks(store, map.value(), run.grid());
+    units.mark_cache.copy_dirty(map.value().marks, marks);
+    result.arrays.bounds = run.grid().bounds();
+    read_arrays(store, map.value(), registers, marks, result.arrays);
   }
   Result<Tree> tree = tree_from_device_image(
       read_image(store, map.value(), run.grid(), mesh.triangle_count, registers));
-  if (!tree.ok()) return tree.status();
+  if (!tree.ok() && !options.keep_broken) return tree.status();
 
   result.config = machine.name;
   result.clock_mhz = machine.clock_mhz;
@@ -241,7 +244,11 @@ Result<SimulationResult> simulate_paper(const MeshView& mesh, const MachineConfi
   result.mark_cache = units.mark_cache.statistics();
   result.memory_traits = memory.traits();
   result.memory = memory.statistics();
-  result.tree = std::move(tree).value();
+  if (tree.ok()) {
+    result.tree = std::move(tree).value();
+  } else {
+    result.broken_tree = tree.status().message();
+  }
   return result;
 }
 

@@ -23,8 +23,9 @@ void Timeline::sample(std::uint64_t cycle) {
     busy_[u] = activity.busy_cycles;
     stalled_[u] = stalled;
   }
-  sample.bus_bytes = bus_->moved_bytes() - bytes_;
-  bytes_ = bus_->moved_bytes();
+  const std::uint64_t moved = moved_bytes_();
+  sample.bus_bytes = moved - bytes_;
+  bytes_ = moved;
   begin_ = cycle;
   samples_.push_back(std::move(sample));
   if (samples_.size() >= 2 * std::size_t{windows_}) halve();

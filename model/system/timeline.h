@@ -3,19 +3,21 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "model/kernel/unit.h"
 #include "model/report/simulation.h"
-#include "model/system/bus.h"
 
 namespace fasttree::model {
 
 class Timeline {
  public:
-  /// Between `windows` and twice as many samples come out of a long run; 0: none.
-  Timeline(std::uint32_t windows, std::vector<Unit*> units, const Bus& bus)
-      : windows_(windows), units_(std::move(units)), bus_(&bus) {
+  /// Between `windows` and twice as many samples come out of a long run; 0: none. `moved_bytes`:
+  /// over the bus so far.
+  Timeline(std::uint32_t windows, std::vector<const Unit*> units,
+           std::function<std::uint64_t()> moved_bytes)
+      : windows_(windows), units_(std::move(units)), moved_bytes_(std::move(moved_bytes)) {
     busy_.resize(units_.size());
     stalled_.resize(units_.size());
   }
@@ -35,8 +37,8 @@ class Timeline {
   void halve();
 
   std::uint32_t windows_;
-  std::vector<Unit*> units_;
-  const Bus* bus_;
+  std::vector<const Unit*> units_;
+  std::function<std::uint64_t()> moved_bytes_;
   std::uint32_t window_ = 256;
   std::uint64_t begin_ = 0;
   std::uint64_t bytes_ = 0;

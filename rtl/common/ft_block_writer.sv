@@ -39,7 +39,10 @@ module ft_block_writer #(
 
   always_comb begin
     merged = block;
-    if (put_valid) merged[8*ITEM*32'(place)+:8*ITEM] = put_data;
+    // Item by item: a part chosen by a variable would be built as a shifter.
+    for (int i = 0; i < Items; i++) begin
+      if (put_valid && place == ItemBits'(i)) merged[8*ITEM*i+:8*ITEM] = put_data;
+    end
   end
 
   always_ff @(posedge clk) begin
