@@ -22,7 +22,11 @@ class Bench {
     context_.fatalOnError(false);
     reset();
   }
-  ~Bench() { unit.final(); }
+  ~Bench() {
+    unit.final();
+    // A model's destructor goes to the thread's context, which may be a later bench's.
+    Verilated::threadContextp(&context_);
+  }
 
   void reset() {
     if constexpr (requires(Model m) { m.rst = 1; }) unit.rst = 1;
