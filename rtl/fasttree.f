@@ -6,6 +6,10 @@ common/ft_arbiter.sv
 common/ft_block_writer.sv
 units/ft_prefix_sum_sweep.sv
 units/ft_prefix_sum.sv
+units/ft_plane.sv
+units/ft_split_plane.sv
+units/ft_internal_node.sv
+units/ft_leaf_node.sv
 system/ft_registers.sv
 system/ft_control.sv
 units/ft_lru.sv

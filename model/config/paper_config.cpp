@@ -82,9 +82,9 @@ Fields<PaperConfig::LeafNode> leaf_node_fields() {
   Fields<C> f;
   f.count("leaf_node_width", &C::width, 1, 256, "Paper: 32 comparisons and 32 subtractions");
   f.count("leaf_node_pool", &C::pool, 1, 65536,
-          "Assumed: leaves in the buffer pool (at least one more than the width)");
+          "Assumed: leaves in the buffer pool (at least two)");
   f.count("leaf_node_rows_per_cycle", &C::rows_per_cycle, 1, 4,
-          "Assumed: rows of the leaf table written in a cycle");
+          "Assumed: leaves moved to the pool, and rows of the leaf table written, in a cycle");
   return f;
 }
 
@@ -93,8 +93,10 @@ Fields<PaperConfig::InternalNode> internal_node_fields() {
   Fields<C> f;
   f.count("internal_node_shifts_per_cycle", &C::shifts_per_cycle, 1, 32,
           "Paper: an iterative right shifter, so 1");
-  f.count("internal_node_plane_trials", &C::plane_trials, 1, 64,
-          "Assumed: values quantised in a cycle to find a split plane");
+  f.count("internal_node_plane_cycles", &C::plane_cycles, 1, 64,
+          "Ours: cycles from one split plane to the next");
+  f.count("internal_node_plane_latency", &C::plane_latency, 1, 256,
+          "Ours: cycles from a node to its split plane");
   f.count("internal_node_queue", &C::queue, 1, 1024,
           "Assumed: nodes that may wait for their plane, and for the BEU");
   return f;

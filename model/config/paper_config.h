@@ -62,7 +62,8 @@ struct PaperConfig {
   };
   struct InternalNode {
     std::uint32_t shifts_per_cycle = 1;
-    std::uint32_t plane_trials = 2;
+    std::uint32_t plane_cycles = 1;
+    std::uint32_t plane_latency = 19;
     std::uint32_t queue = 4;
   };
   struct PathCompression {

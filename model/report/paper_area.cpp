@@ -23,6 +23,9 @@ constexpr double kSelectRegisters = 1415.0 / 16;
 // leaves after its box and its iteration.
 constexpr double kQuantiserLuts = 1150;
 constexpr double kQuantiserStage = 96;  // registers a stage
+// A split plane's coordinate and its value, our RTL without DSP blocks.
+constexpr double kPlaneLuts = 3100;
+constexpr double kPlaneStage = 42;  // registers a stage
 
 /// LUTs of an n-to-1 choice of one bit: a LUT of six inputs takes three off the choice.
 double mux(double n) {
@@ -86,10 +89,9 @@ Resources leaf_node(const PaperConfig& c) {
 
 Resources internal_node(const PaperConfig& c) {
   const PaperConfig::InternalNode& n = c.internal_node;
-  // A shifter by one position a step; a quantiser for each plane that is tried at once, and one
-  // piece of arithmetic as large for the plane itself.
-  return {n.shifts_per_cycle * 32 * kMux2 + (n.plane_trials + 1.0) * kQuantiserLuts,
-          2.0 * n.queue * 96 + (n.plane_trials + 1.0) * 3 * kQuantiserStage, 0};
+  // A shifter by one position a step, and the pipeline that computes planes.
+  return {n.shifts_per_cycle * 32 * kMux2 + kPlaneLuts,
+          2.0 * n.queue * 96 + n.plane_latency * kPlaneStage, 0};
 }
 
 Resources mark_cache(const PaperConfig& c) {

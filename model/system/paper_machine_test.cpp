@@ -84,7 +84,8 @@ PaperConfig random_config() {
   c.leaf_node.pool = upto(100);
   c.leaf_node.rows_per_cycle = upto(4);
   c.internal_node.shifts_per_cycle = upto(32);
-  c.internal_node.plane_trials = upto(5);
+  c.internal_node.plane_cycles = upto(5);
+  c.internal_node.plane_latency = upto(40);
   c.internal_node.queue = upto(5);
   c.path_compression.step_cycles = upto(4);
   c.mark_cache.block_bytes = power(2, 6);

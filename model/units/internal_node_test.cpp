@@ -13,23 +13,6 @@
 namespace fasttree::model {
 namespace {
 
-TEST(PlaneSearch, FindsTheDefinitionsPlane) {
-  for (const auto& [lo, hi] : std::vector<std::pair<float, float>>{
-           {0, 1}, {-1, 1}, {-0.1083f, 0.0966f}, {1e6f, 1e6f + 1}, {-1e38f, 1e38f}, {-3e-20f, 1}}) {
-    const Box3 bounds{{lo, lo, lo}, {hi, hi, hi}};
-    const AxisLevels levels = make_axis_levels(bounds, AxisSchedule::cyclic);
-    const AxisQuantiser quantiser = make_axis_quantiser(bounds, levels, 0);
-    for (std::uint32_t k = 1; k < kFinestCells; k += 37) {
-      PlaneSearch search(quantiser, hi, k);
-      int trials = 0;
-      for (; !search.found(); ++trials) search.trial();
-      ASSERT_EQ(search.plane(), find_plane(quantiser, hi, k)) << lo << ' ' << hi << ' ' << k;
-      ASSERT_GE(trials, 1);
-      ASSERT_LE(trials, 70);
-    }
-  }
-}
-
 struct Output {
   std::vector<std::uint32_t> marks;
   std::vector<DeviceInternalNode> nodes;
@@ -92,11 +75,22 @@ TEST(InternalNodeUnit, ShiftsOnceMoreThanTheHighestDifferentBit) {
           reference::highest_different_bit(codes[code - 1], codes[code]) + 1);
     }
   }
-  PaperConfig config;
-  config.internal_node.plane_trials = 64;
-  const Output output = run(config, codes, grid);
+  const Output output = run({}, codes, grid);
   EXPECT_GE(output.cycles, shifts);
   EXPECT_LE(output.cycles, shifts + 120);
+}
+
+TEST(SplitPlaneUnit, TakesItsRateAndItsLatency) {
+  const Grid grid(Box3{{0, 0, 0}, {1, 1, 1}}, AxisSchedule::cyclic, 14);
+  std::vector<std::uint32_t> codes;
+  for (std::uint32_t code = 0; code < 1000; ++code) codes.push_back(code);
+  PaperConfig config;
+  config.internal_node.shifts_per_cycle = 32;
+  const std::uint64_t one = run(config, codes, grid).cycles;
+  config.internal_node.plane_latency += 100;
+  EXPECT_EQ(run(config, codes, grid).cycles, one + 100);
+  config.internal_node.plane_cycles = 7;
+  EXPECT_NEAR(static_cast<double>(run(config, codes, grid).cycles), 7000.0, 200.0);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ LeafNodeUnit::LeafNodeUnit(const PaperConfig& config, BusPort& reads, BusPort& c
       row_port_(rows),
       reader_(reads, config.bus.burst_bytes),
       codes_(config.leaf_node.width),
-      pool_(std::max(config.leaf_node.pool, config.leaf_node.width + 1)) {}
+      pool_(std::max(config.leaf_node.pool, 2u)) {}
 
 void LeafNodeUnit::start(Address sorted_codes, std::uint64_t references, Address leaf_codes,
                          Address leaf_rows) {
@@ -27,6 +27,7 @@ void LeafNodeUnit::start(Address sorted_codes, std::uint64_t references, Address
   references_ = references;
   loaded_bytes_ = 0;
   base_ = 0;
+  found_.clear();
   pool_first_ = pool_count_ = 0;
   leaves_ = 0;
   finished_ = false;
@@ -44,6 +45,7 @@ void LeafNodeUnit::tick() {
   reader_.tick();
   waits_ = kBusRead;
   bool worked = write_rows();
+  worked |= move();
   worked |= compare();
   worked |= take_codes();
   if (!worked) worked = finish();
@@ -63,16 +65,15 @@ bool LeafNodeUnit::take_codes() {
   return true;
 }
 
-// All loaded codes with their neighbours below, where the pool has room for as many leaves.
+// All loaded codes with their neighbours below, when the leaves found before are in the pool.
 bool LeafNodeUnit::compare() {
   const std::uint32_t count = loaded_bytes_ / 4;
   if (count == 0 || (count < codes_.size() && reader_.left() > 0)) return false;
-  if (pool_count_ + count > pool_.size()) return false;
+  if (!found_.empty()) return false;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t before = i == 0 ? previous_ : codes_[i - 1];
     if (base_ + i != 0 && before == codes_[i]) continue;
-    pool_[(pool_first_ + pool_count_++) % pool_.size()] = {codes_[i],
-                                                           static_cast<std::uint32_t>(base_ + i)};
+    found_.push_back({codes_[i], static_cast<std::uint32_t>(base_ + i)});
   }
   previous_ = codes_[count - 1];
   base_ += count;
@@ -80,11 +81,23 @@ bool LeafNodeUnit::compare() {
   return true;
 }
 
+// A priority encoder finds the next flag, so leaves go to the pool at the rate of the rows.
+bool LeafNodeUnit::move() {
+  std::uint32_t moved = 0;
+  while (moved < config_.leaf_node.rows_per_cycle && !found_.empty() &&
+         pool_count_ < pool_.size()) {
+    pool_[(pool_first_ + pool_count_++) % pool_.size()] = found_.front();
+    found_.pop_front();
+    ++moved;
+  }
+  return moved > 0;
+}
+
 // A leaf's size is the next one's base less its own; the last one waits for the end.
 bool LeafNodeUnit::write_rows() {
   std::uint32_t written = 0;
   while (written < config_.leaf_node.rows_per_cycle && pool_count_ > 0) {
-    const bool at_end = base_ == references_;
+    const bool at_end = base_ == references_ && found_.empty();
     if (pool_count_ == 1 && !at_end) break;
     if (!code_writer_.ready(4) || !row_writer_.ready(8)) {
       waits_ = kBusWrite;
@@ -104,7 +117,7 @@ bool LeafNodeUnit::write_rows() {
 }
 
 bool LeafNodeUnit::finish() {
-  if (base_ != references_ || pool_count_ > 0) return false;
+  if (base_ != references_ || !found_.empty() || pool_count_ > 0) return false;
   if (!code_port_.requests.ready() || !row_port_.requests.ready()) {
     waits_ = kBusWrite;
     return false;

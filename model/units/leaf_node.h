@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Leaf node generation unit (LNGU): neighbouring codes compared 32 at once, new leaves into the
-// buffer pool, sizes as differences of their bases. Docs: docs/accelerator/leaf_node.md.
+// Leaf node generation unit (LNGU): neighbouring codes compared 32 at once, new leaves one by one
+// into the buffer pool, sizes as differences of their bases. Docs: docs/accelerator/leaf_node.md.
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -32,10 +33,10 @@ class LeafNodeUnit : public Unit {
     std::uint32_t first = 0;
   };
   bool compare();
+  bool move();
   bool take_codes();
   bool write_rows();
   bool finish();
-  std::size_t held() const { return pool_count_; }
   const Leaf& pool(std::size_t i) const { return pool_[(pool_first_ + i) % pool_.size()]; }
 
   PaperConfig config_;
@@ -48,6 +49,7 @@ class LeafNodeUnit : public Unit {
   std::uint32_t loaded_bytes_ = 0;
   std::uint64_t base_ = 0;  ///< index of the first code loaded
   std::uint32_t previous_ = 0;
+  std::deque<Leaf> found_;  ///< of the last comparison, not in the pool yet
   std::vector<Leaf> pool_;  ///< a ring
   std::size_t pool_first_ = 0;
   std::size_t pool_count_ = 0;

@@ -1,83 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/units/split_plane.h"
 
-#include <algorithm>
-
-#include "fasttree/device_image.h"
-#include "grid/float_order.h"
-
 namespace fasttree::model {
 namespace {
 
 enum Stall : std::size_t { kBus };
 
+DeviceInternalNode node_of(const SplitJob& job, const Grid& grid) {
+  // Codes that no sort has made can ask for a level that is not there.
+  if (job.bit >= grid.depth()) return {};
+  const Grid::Split split = grid.split_below(job.upper_code, job.bit);
+  return {0, 0, split.position, split.axis};
+}
+
 }  // namespace
-
-PlaneSearch::PlaneSearch(const AxisQuantiser& quantiser, float hi, std::uint32_t k)
-    : quantiser_(quantiser),
-      k_(k),
-      phase_(Phase::first),
-      least_(to_ordinal(quantiser.lo)),
-      most_(to_ordinal(hi)) {
-  const float guess = quantiser.lo + static_cast<float>(k) / quantiser.scale;
-  start_ = std::clamp(to_ordinal(guess), least_, most_);
-}
-
-bool PlaneSearch::reached(std::int64_t ordinal) const {
-  return quantiser_(from_ordinal(ordinal)) >= k_;
-}
-
-// The bounds of the axis need no trial: the lower is in cell 0, the upper in the last one.
-void PlaneSearch::trial() {
-  switch (phase_) {
-    case Phase::first:
-      if (reached(start_)) {
-        above_ = start_;
-        below_ = least_;
-        phase_ = Phase::down;
-      } else {
-        below_ = start_;
-        above_ = most_;
-        phase_ = Phase::up;
-      }
-      break;
-    case Phase::down: {
-      const std::int64_t next = std::max(above_ - step_, least_);
-      step_ *= 2;
-      if (next == least_) {
-        phase_ = Phase::halve;
-      } else if (reached(next)) {
-        above_ = next;
-      } else {
-        below_ = next;
-        phase_ = Phase::halve;
-      }
-      break;
-    }
-    case Phase::up: {
-      const std::int64_t next = std::min(below_ + step_, most_);
-      step_ *= 2;
-      if (next == most_) {
-        phase_ = Phase::halve;
-      } else if (reached(next)) {
-        above_ = next;
-        phase_ = Phase::halve;
-      } else {
-        below_ = next;
-      }
-      break;
-    }
-    case Phase::halve: {
-      const std::int64_t middle = below_ + (above_ - below_) / 2;
-      (reached(middle) ? above_ : below_) = middle;
-      break;
-    }
-  }
-}
-
-float PlaneSearch::plane() const {
-  return from_ordinal(above_);
-}
 
 SplitPlaneUnit::SplitPlaneUnit(const PaperConfig& config, BusPort& port)
     : Unit("split_plane", "internal_node", {"bus"}),
@@ -89,45 +25,34 @@ void SplitPlaneUnit::start(Address nodes, std::uint32_t count, const Grid& grid)
   writer_.start(port_, kMaxRequestBytes, nodes, Purpose::nodes);
   grid_ = &grid;
   left_ = count;
-  searching_ = false;
+  records_.clear();
+  moves_ = next_in_ = 0;
 }
 
 void SplitPlaneUnit::tick() {
-  blocked_ = false;
   bool worked = false;
-  if (!searching_ && input.valid()) {
-    const SplitJob job = input.pop();
-    // Codes that no sort has made can ask for a level that is not there.
-    const int level = std::clamp(grid_->depth() - 1 - job.bit, 0, kMaxDepth - 1);
-    axis_ = static_cast<std::uint32_t>(grid_->axis_of_level(level));
-    const std::uint32_t cell = grid_->coordinate_of(job.upper_code >> job.bit << job.bit, axis_);
-    search_ = PlaneSearch(grid_->quantiser(axis_), grid_->bounds().hi[axis_],
-                          cell << (kMaxAxisBits - grid_->bits()[axis_]));
-    searching_ = true;
-    worked = true;
-  }
-  if (searching_) {
-    for (std::uint32_t i = 0; i < config_.internal_node.plane_trials && !search_.found(); ++i) {
-      search_.trial();
+  const bool out = !records_.empty() && records_.front().out_at == moves_;
+  blocked_ = out && !writer_.ready(sizeof(DeviceInternalNode));
+  if (!blocked_) {
+    worked = !records_.empty();
+    if (out) {
+      writer_.put(&records_.front().node, sizeof(DeviceInternalNode));
+      records_.pop_front();
+      --left_;
+    }
+    if (input.valid() && moves_ >= next_in_) {
+      records_.push_back(
+          {node_of(input.pop(), *grid_), moves_ + config_.internal_node.plane_latency});
+      next_in_ = moves_ + config_.internal_node.plane_cycles;
       worked = true;
     }
-    if (search_.found()) {
-      const DeviceInternalNode node{0, 0, search_.plane(), axis_};
-      if (writer_.ready(sizeof node)) {
-        writer_.put(&node, sizeof node);
-        searching_ = false;
-        --left_;
-        worked = true;
-      } else {
-        blocked_ = true;
-      }
-    }
-  } else if (left_ == 0 && writer_.holds()) {
-    if (port_.requests.ready()) {
+    ++moves_;
+  }
+  if (!worked && left_ == 0 && writer_.holds()) {
+    blocked_ = !port_.requests.ready();
+    if (!blocked_) {
       writer_.flush();
       worked = true;
-    } else {
-      blocked_ = true;
     }
   }
   if (worked) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The second half of the INGU: where a node's split plane lies. A plane is the least binary32 value
-// that the quantiser puts into the upper cell, so the unit tries values with a quantiser, from the
-// one that arithmetic suggests, until it has it. Docs: docs/accelerator/internal_node.md.
+// The second half of the INGU: where a node's split plane lies, by a pipeline that computes it
+// directly. The value is the grid's. Docs: docs/accelerator/internal_node.md.
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <string>
 
+#include "fasttree/device_image.h"
 #include "grid/grid.h"
 #include "model/config/paper_config.h"
 #include "model/kernel/queue.h"
@@ -14,30 +15,6 @@
 #include "model/system/stream.h"
 
 namespace fasttree::model {
-
-/// The search for one plane, a trial at a time.
-class PlaneSearch {
- public:
-  /// The plane below cell k of 2^15.
-  PlaneSearch() = default;
-  PlaneSearch(const AxisQuantiser& quantiser, float hi, std::uint32_t k);
-
-  bool found() const { return phase_ != Phase::first && above_ - below_ <= 1; }
-  void trial();
-  float plane() const;
-
- private:
-  enum class Phase { first, down, up, halve };
-  bool reached(std::int64_t ordinal) const;
-
-  AxisQuantiser quantiser_;
-  std::uint32_t k_ = 0;
-  Phase phase_ = Phase::halve;
-  std::int64_t below_ = 0;  ///< not in the upper cell
-  std::int64_t above_ = 0;  ///< in it
-  std::int64_t least_ = 0, most_ = 0, start_ = 0;
-  std::int64_t step_ = 1;
-};
 
 /// A node without its plane: level m of the grid's code, and the upper leaf's code.
 struct SplitJob {
@@ -59,14 +36,19 @@ class SplitPlaneUnit : public Unit {
   void clock() { input.clock(); }
 
  private:
+  struct Record {
+    DeviceInternalNode node;
+    std::uint64_t out_at = 0;  ///< the move with which it leaves
+  };
+
   PaperConfig config_;
   BusPort& port_;
   BlockWriter writer_;
   const Grid* grid_ = nullptr;
-  std::uint32_t left_ = 0;
-  bool searching_ = false;
-  std::uint32_t axis_ = 0;
-  PlaneSearch search_;
+  std::uint32_t left_ = 0;      ///< records to be written
+  std::deque<Record> records_;  ///< in the pipeline
+  std::uint64_t moves_ = 0;     ///< of the pipeline: all of it at once or none of it
+  std::uint64_t next_in_ = 0;   ///< the first move that may take a node in
   bool blocked_ = false;
 };
 

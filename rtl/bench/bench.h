@@ -19,7 +19,11 @@ class Bench {
   explicit Bench(std::uint32_t seed = 1) : context_(seed), random_(seed), unit(&context_) {
     reset();
   }
-  ~Bench() { unit.final(); }
+  ~Bench() {
+    unit.final();
+    // A model's destructor goes to the thread's context, which may be a later bench's.
+    Verilated::threadContextp(&context_);
+  }
 
   void reset() {
     if constexpr (requires(Model m) { m.rst = 1; }) unit.rst = 1;
