@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cache in step with the model's: the same answers, traffic, statistics and activity in every
 // cycle, under random requests, back-pressure and memory.
+#include "model/units/mark_cache.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +17,6 @@
 #include "Vmark_cache.h"
 #include "Vmark_cache_pair.h"
 #include "Vmark_cache_small.h"
-#include "model/units/mark_cache.h"
 #include "rtl/bench/bench.h"
 
 namespace fasttree::rtl {
