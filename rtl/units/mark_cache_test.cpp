@@ -105,10 +105,13 @@ class Lockstep {
     bench_.unit.flush = 0;
     bench_.unit.rdd_valid = 0;
     bench_.unit.ans_ready = 0;
+    bench_.unit.clear = 0;
+    await_clear();
     bench_.unit.clear = 1;
     bench_.cycle();
     bench_.unit.clear = 0;
     bench_.settle();
+    EXPECT_EQ(await_clear(), shape_.bytes / shape_.ways / 8) << "a set a cycle";
   }
 
   Bench<Rtl>& bench() { return bench_; }
@@ -116,6 +119,15 @@ class Lockstep {
   const model::CacheStatistics& statistics() const { return model_->statistics(); }
 
  private:
+  std::uint32_t await_clear() {
+    std::uint32_t cycles = 0;
+    for (; !bench_.unit.done; ++cycles) {
+      bench_.cycle();
+      bench_.settle();
+    }
+    return cycles;
+  }
+
   MarkRequest choose(const Manner& manner) {
     std::uint32_t index = bench_.random() % 4;
     if (bench_.chance(manner.hot)) {
@@ -322,7 +334,7 @@ TEST(RtlMarkCache, SaysWhenItIsMisused) {
   bench.unit.flush = 0;
   bench.unit.rdd_valid = 0;
   bench.unit.ans_ready = 0;
-  bench.cycle();
+  while (!bench.unit.done) bench.cycle();
   EXPECT_EQ(bench.failed_assertions(), 0);
   bench.unit.req_valid = 1;
   bench.unit.req_addr = 2;
