@@ -9,7 +9,7 @@ module ft_mark_cache #(
 ) (
     input  logic        clk,
     input  logic        rst,
-    input  logic        clear,  // forget everything; only while done
+    input  logic        clear,  // forget everything, a set a cycle, as after `rst`; only while done
     input  logic        flush,  // write back what memory does not have; only while done
     input  logic        req_valid,
     output logic        req_ready,
@@ -45,7 +45,8 @@ module ft_mark_cache #(
   localparam int WaitBits = $clog2(MISS_PENALTY);
   localparam logic [WAYS-1:0] OddWays = {(WAYS / 2) {2'b10}};
 
-  typedef enum logic [2:0] {
+  typedef enum logic [3:0] {
+    Clear,
     Ready,
     Answer,  // a hit that waits for room
     Miss,
@@ -64,7 +65,7 @@ module ft_mark_cache #(
   logic [1:0] count;
   logic push, look;
 
-  // The request looked up last; in a flush the set at hand.
+  // The request looked up last; in a flush and a clear the set at hand.
   logic [31:2] held_addr;
   logic held_write;
   logic [31:0] held_word;
@@ -154,20 +155,19 @@ module ft_mark_cache #(
     assign bank_row[32*w+:32] = word;
   end
 
-  // Of a set that has not been used since `clear`, no row below means anything.
-  logic [Sets-1:0] touched;
+  // What is known of a set, beside its tags. All zeros: nothing valid, way 0 to be filled first.
   // Block RAM would be slow here: `oldest` leads to the address of another one.
   (* ram_style = "distributed" *) logic [WAYS-1:0] valid_rows[0:Sets-1];
   (* ram_style = "distributed" *) logic [WAYS-1:0] dirty_rows[0:Sets-1];
   (* ram_style = "distributed" *) logic [Pairs-1:0] order_rows[0:Sets-1];
   logic [WAYS-1:0] head_valid, held_valid, dirty, dirty_next;
   logic [Pairs-1:0] order, order_next;
-  logic held_touched, dirty_drop, dirty_put;
+  logic clearing, dirty_drop, dirty_put;
 
-  assign head_valid   = valid_rows[head_set] & {WAYS{touched[head_set]}};
-  assign held_touched = touched[held_set];
-  assign dirty        = dirty_rows[held_set] & {WAYS{held_touched}};
-  assign order        = order_rows[held_set] & {Pairs{held_touched}};
+  assign head_valid   = valid_rows[head_set];
+  assign clearing     = state == Clear;
+  assign dirty        = dirty_rows[held_set];
+  assign order        = order_rows[held_set];
   assign dirty_drop   = fill || state == FlushWrite;
   assign dirty_put    = held_write && (fill || (looked && !missed));
   assign dirty_next   = (dirty & ~(way & {WAYS{dirty_drop}})) | (way & {WAYS{dirty_put}});
@@ -180,35 +180,35 @@ module ft_mark_cache #(
   );
 
   always_ff @(posedge clk) begin
-    if (fill) valid_rows[held_set] <= held_valid | way;
-    if (looked) order_rows[held_set] <= order_next;
-    if (looked || fill || (state == FlushWrite && wr_ready)) dirty_rows[held_set] <= dirty_next;
-    if (rst || clear) touched <= '0;
-    else if (looked) touched[held_set] <= 1'b1;
+    if (clearing || fill) valid_rows[held_set] <= clearing ? '0 : held_valid | way;
+    if (clearing || looked) order_rows[held_set] <= clearing ? '0 : order_next;
+    if (clearing || looked || fill || (state == FlushWrite && wr_ready)) begin
+      dirty_rows[held_set] <= clearing ? '0 : dirty_next;
+    end
   end
 
   // The look-up. What was written in the cycle before has not been read: the rows were read then.
   logic wrote, filled;  // in the cycle before: a word, by a hit; a block
   logic [63:0] last_block;
   logic same_set, forward, hit;
-  logic [WAYS-1:0] live, hits, picks, forward_picks;
+  logic [WAYS-1:0] live, hits, victims, picks, stores;
   logic [31:0] even_word, odd_word, other_word, late_word, found_word;
   logic [TagBits-1:0] victim_tag;
 
   assign same_set = head_set == held_set;
   assign forward  = head_addr[31:3] == held_addr[31:3] &&
                     (filled || (wrote && head_addr[2] == held_addr[2]));
-  assign live = head_valid & ~(way & {WAYS{filled && same_set}}) &
-                {WAYS{state == Ready && !forward}};
+  assign live = head_valid & ~(way & {WAYS{filled && same_set}}) & {WAYS{state == Ready}};
   assign hit = forward || hits != '0;
 
   for (genvar w = 0; w < WAYS; w = w + 1) begin : gen_hit
     assign hits[w]  = live[w] && tag_row[TagBits*w+:TagBits] == head_tag;
-    assign picks[w] = state == Issue || state == FlushWrite ? way[w] || way[w^1]
-                                                            : hits[head_addr[2] ? w ^ 1 : w];
-    assign forward_picks[w] = forward && way[head_addr[2] ? w ^ 1 : w];
-    assign bank_write[w] = fill ? way[w] || way[w^1]
-                                : look && head_write && (picks[w] || forward_picks[w]);
+    // Selected by the late `hits` with as little as possible behind them.
+    assign victims[w] = (state == Issue || state == FlushWrite) && (way[w] || way[w^1]);
+    assign picks[w]   = victims[w] || (!forward && hits[head_addr[2] ? w ^ 1 : w]);
+    assign stores[w]  = fill ? way[w] || way[w^1]
+                             : look && head_write && forward && way[head_addr[2] ? w ^ 1 : w];
+    assign bank_write[w] = stores[w] || (look && head_write && picks[w]);
   end
 
   always_comb begin
@@ -287,13 +287,15 @@ module ft_mark_cache #(
     end
 
     case (state)
+      Clear: begin
+        held_addr[3+:SetBits] <= held_set + 1'b1;
+        if (&held_set) state <= Ready;
+      end
       Ready: begin
         if (look && !hit) state <= Miss;
         else if (look && !head_write && !answer_room) state <= Answer;
-        if (flush) begin
-          state               <= FlushPick;
-          held_addr[3+:SetBits] <= '0;
-        end
+        if (flush) state <= FlushPick;
+        if (flush || clear) held_addr[3+:SetBits] <= '0;
       end
       Answer: if (answer_room) state <= Ready;
       Miss: begin
@@ -316,8 +318,10 @@ module ft_mark_cache #(
       end
       FlushRead: state <= FlushWrite;
       FlushWrite: if (wr_ready) state <= FlushPick;
+      default: ;
     endcase
-    if (rst) state <= Ready;
+    if (rst) held_addr[3+:SetBits] <= '0;
+    if (rst || clear) state <= Clear;
   end
 
   // Counted in the cycle after the look-up.
