@@ -22,6 +22,11 @@ package ft_pkg;
   localparam logic [3:0] Busy = 4'd1;
   localparam logic [3:0] Stalled = 4'd2;
 
+  // Cycles from operands to result: ft_float_sub, ft_float_mul with WIDE, both one after the other.
+  localparam int FloatSubLatency = 3;
+  localparam int FloatMulLatency = 3;
+  localparam int QuantiserLatency = FloatSubLatency + FloatMulLatency;
+
   // A child in the device image: a leaf by its place in the leaf table.
   localparam logic [31:0] DeviceLeaf = 32'h8000_0000;
 
