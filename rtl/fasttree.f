@@ -30,3 +30,10 @@ system/ft_sorter.sv
 units/ft_scene_reader.sv
 units/ft_scene_bound.sv
 units/ft_grid_setup.sv
+common/ft_fifo_two.sv
+common/ft_normalise.sv
+common/ft_float_sub.sv
+common/ft_float_mul.sv
+units/ft_quantiser.sv
+units/ft_morton_code.sv
+units/ft_pair_writer.sv

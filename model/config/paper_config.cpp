@@ -35,7 +35,7 @@ Fields<PaperConfig::MortonCode> morton_code_fields() {
   f.count("morton_code_quantisers", &C::quantisers, 1, 6,
           "Assumed from the area of Table I: one quantiser an MCGU, shared by its six bounds");
   f.count("morton_code_quantiser_latency", &C::quantiser_latency, 1, 64,
-          "Assumed: cycles from a coordinate to its cell");
+          "Of our RTL: cycles from a coordinate to its bits of a code");
   f.count("morton_code_box_latency", &C::box_latency, 1, 64,
           "Assumed: cycles of the three 3-input bound units");
   f.count("morton_code_input_queue", &C::input_queue, 1, 1024,

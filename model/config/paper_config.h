@@ -34,7 +34,7 @@ struct PaperConfig {
   struct MortonCode {
     std::uint32_t units = 4;
     std::uint32_t quantisers = 1;
-    std::uint32_t quantiser_latency = 3;
+    std::uint32_t quantiser_latency = 7;
     std::uint32_t box_latency = 1;
     std::uint32_t input_queue = 2;
     std::uint32_t output_queue = 16;

@@ -24,23 +24,7 @@ void MortonCodeUnit::tick() {
         idle();
         return;
       }
-      job_ = input.pop();
-      // Three units of three inputs, for the least and the greatest.
-      for (std::size_t a = 0; a < 3; ++a) {
-        const auto [least, greatest] =
-            std::minmax({job_.coordinates[a], job_.coordinates[a + 3], job_.coordinates[a + 6]});
-        bounds_[a] = least;
-        bounds_[a + 3] = greatest;
-      }
-      quantised_ = 0;
-      wait_ = config_.box_latency;
-      state_ = State::box;
-      if (wait_ > 1) {
-        --wait_;
-      } else {
-        state_ = State::quantise;
-        wait_ = config_.quantiser_latency;
-      }
+      take();
       break;
     case State::box:
       if (--wait_ == 0) {
@@ -71,18 +55,39 @@ void MortonCodeUnit::tick() {
   busy();
 }
 
+// The first cycle of the box. Three units of three inputs, for the least and the greatest.
+void MortonCodeUnit::take() {
+  job_ = input.pop();
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto [least, greatest] =
+        std::minmax({job_.coordinates[a], job_.coordinates[a + 3], job_.coordinates[a + 6]});
+    bounds_[a] = least;
+    bounds_[a + 3] = greatest;
+  }
+  quantised_ = 0;
+  wait_ = config_.box_latency;
+  state_ = State::box;
+  if (wait_ > 1) {
+    --wait_;
+  } else {
+    state_ = State::quantise;
+    wait_ = config_.quantiser_latency;
+  }
+}
+
 void MortonCodeUnit::quantise_one() {
   const std::size_t axis = quantised_ % 3;
   (quantised_ < 3 ? cells_.lo : cells_.hi)[axis] = grid_->quantise(axis, bounds_[quantised_]);
   ++quantised_;
 }
 
-// x fastest, then y, then z.
+// x fastest, then y, then z. The next triangle's box is begun while the last cell goes out.
 void MortonCodeUnit::emit() {
   Pair pair{grid_->morton_code(cell_), job_.id, cell_ == cells_.hi};
   output.push(pair);
   if (pair.last) {
     state_ = State::ready;
+    if (input.valid()) take();
     return;
   }
   for (std::size_t a = 0; a < 3; ++a) {

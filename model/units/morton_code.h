@@ -42,6 +42,7 @@ class MortonCodeUnit : public Unit {
 
  private:
   enum class State { ready, box, quantise, iterate };
+  void take();
   void quantise_one();
   void emit();
 

@@ -55,6 +55,27 @@ TEST(MortonCodeUnit, TakesItsTimeForBoxBoundsAndCells) {
   }
 }
 
+TEST(MortonCodeUnit, BeginsTheNextBoxWithTheLastCell) {
+  const PaperConfig::MortonCode config;
+  MortonCodeUnit unit("mcgu", config);
+  unit.set_grid(unit_grid());
+  const std::array<Vec3, 3> point{Vec3{0, 0, 0}, Vec3{0, 0, 0}, Vec3{0, 0, 0}};
+  std::uint32_t cycles = 0;
+  std::vector<std::uint32_t> at;
+  for (std::uint32_t id = 0; at.size() < 10; ++cycles) {
+    if (unit.input.ready()) unit.input.push(job_of(id++, point));
+    unit.tick();
+    if (unit.output.valid()) {
+      unit.output.drop();
+      at.push_back(cycles);
+    }
+    unit.clock();
+  }
+  for (std::size_t i = 1; i < at.size(); ++i) {
+    EXPECT_EQ(at[i] - at[i - 1], 6 + (config.quantiser_latency - 1) + 1);
+  }
+}
+
 TEST(MortonCodeUnit, TakesNoTriangleWhileItIterates) {
   PaperConfig::MortonCode config;
   config.output_queue = 1;

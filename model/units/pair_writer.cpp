@@ -38,10 +38,15 @@ void PairWriter::tick() {
   const std::uint32_t size = pair_bytes(config_);
   const std::uint32_t mask = (1u << config_.radix_sort.radix_bits) - 1;
   std::uint32_t taken = 0;
+  std::size_t requests = 0;
+  const bool counting = counting_;
   blocked_ = false;
   while (taken < config_.morton_code.pairs_per_cycle && triangles_left_ > 0) {
     Queue<Pair>& unit = *units_[unit_];
     if (!unit.valid()) break;
+    // A request a cycle, of the pair that completes a block.
+    requests += writer_.requests_for(size);
+    if (requests > 1) break;
     if (!writer_.ready(size)) {
       blocked_ = true;
       break;
@@ -58,16 +63,19 @@ void PairWriter::tick() {
       if (++unit_ == units_.size()) unit_ = 0;
     }
   }
+  counting_ = taken > 0;  // the digits of what was taken, in the next cycle
   if (taken == 0 && triangles_left_ == 0 && writer_.holds()) {
     if (port_.requests.ready()) {
       writer_.flush();
+      busy();
+    } else if (counting) {
       busy();
     } else {
       stalled(kBus);
     }
     return;
   }
-  if (taken > 0) {
+  if (taken > 0 || counting) {
     busy();
   } else if (blocked_) {
     stalled(kBus);
@@ -77,7 +85,7 @@ void PairWriter::tick() {
 }
 
 bool PairWriter::done() const {
-  return triangles_left_ == 0 && !writer_.holds();
+  return triangles_left_ == 0 && !writer_.holds() && !counting_;
 }
 
 std::string PairWriter::waits_for() const {

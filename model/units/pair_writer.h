@@ -46,6 +46,7 @@ class PairWriter : public Unit {
   std::uint64_t written_ = 0;
   std::vector<std::uint32_t> counts_;
   bool blocked_ = false;
+  bool counting_ = false;  ///< the digits of the cycle before
 };
 
 }  // namespace fasttree::model
