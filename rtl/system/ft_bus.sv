@@ -14,7 +14,7 @@ module ft_bus #(
     parameter int BURST = 64,            // bytes of the stream's bursts, from BUS_BYTES to 64
     parameter int READS_IN_FLIGHT = 16,  // bursts of the stream
     parameter int WRITES_IN_FLIGHT = 64,
-    parameter bit DUPLEX = 1'b0,         // reads and writes do not share the cycles
+    parameter int DUPLEX = 0,            // reads and writes do not share the cycles
     parameter int ID_BITS = 4,           // AWID is the client; ARID 0 the stream, 1 the cache
     parameter logic [7*WRITERS-1:0] BLOCKS = {
       7'd8, 7'd8, 7'd64, 7'd64, 7'd64, 7'd64, 7'd32, 7'd32
@@ -251,8 +251,8 @@ module ft_bus #(
   // ---- Turns: one data beat a cycle, by whole bursts. The turn passes when a burst ends, or when
   // nothing is there to cross; it is known a cycle ahead, so that both sides start on registers.
   assign w_next       = write_load || (w_valid && !w_take);
-  assign m_axi_rready = DUPLEX || !turn_write;
-  assign m_axi_wvalid = w_valid && (DUPLEX || turn_write);
+  assign m_axi_rready = DUPLEX != 0 || !turn_write;
+  assign m_axi_wvalid = w_valid && (DUPLEX != 0 || turn_write);
   assign w_take       = m_axi_wvalid && m_axi_wready;
 
   always_ff @(posedge clk) begin
@@ -312,7 +312,7 @@ module ft_bus #(
       assert (window_begin[5:0] == '0 && window_end[5:0] == '0)
       else $error("ft_bus: the window is not aligned");
       assert (!rdq_valid || rdq_addr[2:0] == '0) else $error("ft_bus: a read of broken words");
-      assert (DUPLEX || !(r_take && w_take)) else $error("ft_bus: two beats in a cycle");
+      assert (DUPLEX != 0 || !(r_take && w_take)) else $error("ft_bus: two beats in a cycle");
       assert (!r_take || m_axi_rid == StreamId || m_axi_rid == CacheId)
       else $error("ft_bus: data for nobody");
       assert (!m_axi_bvalid || !writes_idle) else $error("ft_bus: an answer to nothing");
