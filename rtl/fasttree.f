@@ -37,3 +37,4 @@ common/ft_float_mul.sv
 units/ft_quantiser.sv
 units/ft_morton_code.sv
 units/ft_pair_writer.sv
+system/fasttree_top.sv

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "rtl/bench/axi_ports.h"
 #include "rtl/engine/top.h"
 
 namespace fasttree::rtl {

@@ -12,7 +12,7 @@ module fasttree_top #(
     parameter int LEAF_NODE_WIDTH = 32,
     parameter int MARK_CACHE_BYTES = 16384,
     parameter int MARK_CACHE_WAYS = 16,
-    parameter bit BUS_DUPLEX = 1'b0,       // reads and writes may cross in one cycle
+    parameter int BUS_DUPLEX = 0,          // reads and writes may cross in one cycle
     parameter int READ_AHEAD_BYTES = 512,
     parameter int WATCHDOG = 1 << 20,      // cycles, until the host orders otherwise
     localparam int Activities = 12 + MORTON_CODE_UNITS + PREFIX_SUM_UNITS
