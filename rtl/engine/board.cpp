@@ -21,7 +21,10 @@ Board::Board(Top& top, AxiMemory& memory, const model::MachineConfig& config,
       traffic_(traffic) {
   memory_.observe(traffic);
   top_.reset(true);
-  for (int i = 0; i < 4; ++i) step();
+  for (int i = 0; i < 4; ++i) {
+    top_.settle(bus_, host_);
+    top_.clock();
+  }
   top_.reset(false);
   for (int i = 0; i < 4; ++i) step();
 }

@@ -10,6 +10,7 @@
 #include "fasttree/device_image.h"
 #include "model/memory/make_memory.h"
 #include "model/system/compare_reference.h"
+#include "model/system/host_interface.h"
 #include "model/system/paper_machine.h"
 #include "model/system/pipe_memory.h"
 #include "rtl/engine/board.h"
@@ -326,7 +327,7 @@ TEST(RtlMachine, SaysForWhichConfigurationsItWasBuilt) {
 TEST(RtlMachine, GoesOnAfterWhateverHasEndedABuild) {
   const fasttree::test::OwnedMesh mesh = fasttree::test::soup(300, 5, 0.1f);
   const MachineConfig config = machine();
-  const model::HostOrder host = prepare_order(mesh.view(), config.paper).value();
+  const model::HostOrder host = model::prepare_order(mesh.view(), config.paper).value();
   ft_accel_order order{};
   ASSERT_NE(ft_accel_plan(&order, 0, host.triangles, static_cast<std::uint32_t>(host.references),
                           static_cast<std::uint32_t>(host.depth)),
@@ -334,7 +335,7 @@ TEST(RtlMachine, GoesOnAfterWhateverHasEndedABuild) {
   model::ByteStore store(order.window_end);
   model::MemoryMap map;
   map.scene = model::Address(order.scene);
-  write_scene(mesh.view(), map, store);
+  model::write_scene(mesh.view(), map, store);
   std::vector<std::uint32_t> expected;
 
   PipeSettings pipe;
@@ -374,7 +375,7 @@ TEST(RtlMachine, GoesOnAfterWhateverHasEndedABuild) {
     if (kind < 4) {
       EXPECT_EQ(error, kErrors[kind]);
     }
-    if (kind == 3) write_scene(mesh.view(), map, store);
+    if (kind == 3) model::write_scene(mesh.view(), map, store);
     if (spoilt) continue;
     ASSERT_EQ(error, 0u);
     ft_accel_result result;

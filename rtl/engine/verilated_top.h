@@ -30,7 +30,10 @@ class VerilatedTop : public Top {
     model_->final();
   }
 
-  void reset(bool active) override { model_->aresetn = !active; }
+  void reset(bool active) override {
+    model_->aresetn = !active;
+    context_.assertOn(!active);  // registers begin at random
+  }
 
   void settle(AxiSignals& memory, HostSignals& host) override {
     Model& m = *model_;

@@ -592,7 +592,7 @@ module fasttree_top #(
   ) mark_cache (
       .clk(aclk),
       .rst(quiet_rst),
-      .clear(bounds_start),
+      .clear(1'b0),  // each build begins with a reset of all units
       .flush(flush_start),
       .req_valid(beu_req_valid || pcu_req_valid),
       .req_ready(req_ready),

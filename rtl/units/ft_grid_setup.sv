@@ -170,7 +170,9 @@ module ft_grid_setup (
   assign grid.rank  = rank;
 
   always_ff @(posedge clk) begin
-    if (state == Depth) begin
+    if (rst) begin
+      ranking <= 1'b0;
+    end else if (state == Depth) begin
       depth   <= depth_asked > cap ? cap : depth_asked;
       level   <= '0;
       ranking <= 1'b0;
