@@ -17,7 +17,9 @@ class TrafficAccount : public AxiObserver {
  public:
   explicit TrafficAccount(const model::MemoryMap& map) : map_(map) {}
 
-  void burst(std::uint32_t address, std::uint32_t bytes, bool write, std::uint32_t) override {
+  void burst(std::uint32_t address, std::uint32_t bytes, bool write, std::uint32_t id) override {
+    // AXI reads whole beats: of one, the cache wants a block.
+    if (!write && id == kCacheId) bytes = kCacheBlock;
     const auto purpose = static_cast<std::size_t>(purpose_of(address, bytes));
     (write ? write_bytes_ : read_bytes_)[purpose] += bytes;
     moved_bytes_ += bytes;
@@ -51,6 +53,9 @@ class TrafficAccount : public AxiObserver {
     if (at >= map_.pairs[0].value) return Purpose::pairs;
     return Purpose::scene;
   }
+
+  static constexpr std::uint32_t kCacheId = 1;
+  static constexpr std::uint32_t kCacheBlock = 8;
 
   model::MemoryMap map_;
   std::uint64_t moved_bytes_ = 0;
