@@ -129,7 +129,8 @@ module ft_control (
     else order_bad = 1'b0;
   end
 
-  // ---- What has gone wrong; the first of these that holds.
+  // ---- What has gone wrong; the first of these that holds. What a unit says of the build before it
+  // forgets with its start.
   assign timeout = order.watchdog != '0 && still >= order.watchdog;
 
   always_comb begin
@@ -148,13 +149,13 @@ module ft_control (
     end else if (bus_stray) begin
       found        = ft_pkg::ErrorWindow;
       found_detail = bus_stray_addr;
-    end else if (not_finite && phase == Bounds) begin
+    end else if (not_finite && phase == Bounds && !launch) begin
       found        = ft_pkg::ErrorNotFinite;
       found_detail = not_finite_word;
-    end else if (too_many_references && phase == Codes) begin
+    end else if (too_many_references && phase == Codes && !launch) begin
       found        = ft_pkg::ErrorReferences;
       found_detail = order.reference_capacity;
-    end else if (too_many_leaves && phase == Leaves) begin
+    end else if (too_many_leaves && phase == Leaves && !launch) begin
       found        = ft_pkg::ErrorLeaves;
       found_detail = order.leaf_capacity;
     end else if (timeout) found = ft_pkg::ErrorTimeout;
