@@ -61,6 +61,7 @@ void Bus::tick() {
   MemoryCompletion completion;
   while (memory_.take(completion)) complete(completion);
 
+  hand_on();
   bool moved = false;
   if (config_.duplex) {
     moved = move_data(reading_, true, false);
@@ -71,7 +72,7 @@ void Bus::tick() {
   issue_reads();
   if (moved) {
     busy();
-  } else if (bursts_in_flight_ > 0 || shared_.port || writing_.port) {
+  } else if (bursts_in_flight_ > 0 || to_memory_.port || shared_.port || writing_.port) {
     stalled(kMemory);
   } else {
     idle();
@@ -118,7 +119,8 @@ bool Bus::choose(Transfer& transfer, bool reads, bool writes) {
       const BusPort::Read& oldest = port.reads_[port.first_read_];
       if (oldest.issued && oldest.waiting == 0) read = &port, read_at = at;
     }
-    if (writes && !write && port.requests.valid() && port.requests.front().write) {
+    if (writes && !write && to_memory_.port == nullptr && port.requests.valid() &&
+        port.requests.front().write) {
       write = &port, write_at = at;
     }
   }
@@ -170,23 +172,30 @@ bool Bus::move_write(Transfer& transfer) {
     moved = true;
   }
   if (transfer.offset < request.bytes) return moved;
-  // All of it is here: to memory, as fast as that takes it.
-  while (port.part_bytes_ < request.bytes) {
-    const Address at(request.address.value + port.part_bytes_);
-    if (!memory_.ready(at, true)) return moved;
-    const std::uint32_t size = part_size(request, port.part_bytes_);
-    const std::uint32_t tag = kWriteTag | port.index_ << kTagPortShift;
-    memory_.accept({at, size, true, tag}, now_);
-    ++port.writes_in_flight_;
-    ++bursts_in_flight_;
-    ++progress_;
-    port.part_bytes_ += size;
-  }
+  // All of it has crossed: to memory's side, which takes it as fast as it can.
   account(request);
-  port.part_bytes_ = 0;
+  to_memory_ = {&port, request.address, request.bytes, 0};
   port.requests.pop();
   transfer.port = nullptr;
+  hand_on();
   return moved;
+}
+
+void Bus::hand_on() {
+  while (to_memory_.port != nullptr && to_memory_.issued < to_memory_.bytes) {
+    const Address at(to_memory_.address.value + to_memory_.issued);
+    if (!memory_.ready(at, true)) return;
+    const auto left = to_memory_.bytes - to_memory_.issued;
+    const std::uint32_t size =
+        std::min(left, access_bytes_ - static_cast<std::uint32_t>(at.value % access_bytes_));
+    const std::uint32_t tag = kWriteTag | to_memory_.port->index_ << kTagPortShift;
+    memory_.accept({at, size, true, tag}, now_);
+    ++to_memory_.port->writes_in_flight_;
+    ++bursts_in_flight_;
+    ++progress_;
+    to_memory_.issued += size;
+  }
+  to_memory_ = {};
 }
 
 void Bus::issue_reads() {
@@ -196,6 +205,7 @@ void Bus::issue_reads() {
     const std::size_t at = wrap(start + i);
     BusPort& port = *active_[at];
     if (!port.requests.valid() || port.requests.front().write) continue;
+    if (to_memory_.port == &port) continue;  // a read does not overtake its port's write
     const BusRequest& request = port.requests.front();
     if (port.part_bytes_ == 0 && port.read_count_ == port.reads_.size()) continue;
     // A new read takes a place in the ring with its first burst.
@@ -235,12 +245,13 @@ void Bus::issue_reads() {
 }
 
 bool Bus::done() const {
-  return bursts_in_flight_ == 0 && std::all_of(active_.begin(), active_.end(),
-                                               [](const auto* port) { return port->quiet(); });
+  return bursts_in_flight_ == 0 && to_memory_.port == nullptr &&
+         std::all_of(active_.begin(), active_.end(),
+                     [](const auto* port) { return port->quiet(); });
 }
 
 std::string Bus::waits_for() const {
-  if (bursts_in_flight_ == 0 && !shared_.port && !writing_.port) return {};
+  if (bursts_in_flight_ == 0 && !to_memory_.port && !shared_.port && !writing_.port) return {};
   return "memory, which " +
          (memory_.idle() ? std::string("has nothing to do") : "waits for " + memory_.waits_for());
 }

@@ -77,7 +77,7 @@ class BusPort {
   std::vector<Read> reads_;  ///< a ring
   std::uint32_t first_read_ = 0;
   std::uint32_t read_count_ = 0;
-  std::uint32_t part_bytes_ = 0;  ///< of the request in front, handed to memory so far
+  std::uint32_t part_bytes_ = 0;  ///< of the read in front, asked for so far
   std::uint64_t writes_in_flight_ = 0;
 };
 
@@ -123,6 +123,7 @@ class Bus : public Unit {
   };
 
   void complete(const MemoryCompletion& completion);
+  void hand_on();
   bool move_data(Transfer& transfer, bool reads, bool writes);
   bool choose(Transfer& transfer, bool reads, bool writes);
   bool move_read(Transfer& transfer);
@@ -148,6 +149,14 @@ class Bus : public Unit {
   std::uint64_t cycle_ = 0;
   Picoseconds now_;
   Transfer shared_, reading_, writing_;
+  /// The write that has crossed and that memory has not taken whole: one, meanwhile no other begins
+  /// to cross, but reads do.
+  struct {
+    BusPort* port = nullptr;
+    Address address;
+    std::uint32_t bytes = 0;
+    std::uint32_t issued = 0;
+  } to_memory_;
   bool last_was_read_ = false;
   std::size_t next_data_port_ = 0;
   std::size_t next_read_port_ = 0;
