@@ -35,6 +35,7 @@ PaperUnits::PaperUnits(const PaperConfig& config, double clock_mhz, Memory& memo
     : bus(config.bus, clock_mhz, memory, store),
       scene_port(bus.add_port("scene")),
       pair_port(bus.add_port("pairs")),
+      sort_read_port(bus.add_port("sort_read")),
       sort_port(bus.add_port("sort")),
       leaf_read_port(bus.add_port("leaf_read")),
       leaf_code_port(bus.add_port("leaf_codes")),
@@ -51,7 +52,7 @@ PaperUnits::PaperUnits(const PaperConfig& config, double clock_mhz, Memory& memo
       morton_code(make_morton_code(config)),
       pair_writer(config, pair_port),
       prefix_sum(make_prefix_sum(config)),
-      radix_sort(config, sort_port, pointers(prefix_sum)),
+      radix_sort(config, sort_read_port, sort_port, pointers(prefix_sum)),
       leaf_node(config, leaf_read_port, leaf_code_port, leaf_row_port),
       split_plane(config, node_port),
       mark_cache(config, cache_port),
@@ -96,7 +97,7 @@ Phase PaperUnits::code_phase() {
 Phase PaperUnits::sort_phase() {
   Phase phase;
   phase.units = {&radix_sort};
-  phase.ports = {&sort_port};
+  phase.ports = {&sort_read_port, &sort_port};
   for (auto& unit : prefix_sum) {
     phase.units.push_back(unit.get());
     phase.clocks.add(*unit);

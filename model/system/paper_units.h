@@ -56,6 +56,7 @@ struct PaperUnits {
   Bus bus;
   BusPort& scene_port;
   BusPort& pair_port;
+  BusPort& sort_read_port;
   BusPort& sort_port;
   BusPort& leaf_read_port;
   BusPort& leaf_code_port;

@@ -13,7 +13,7 @@ constexpr std::uint16_t kNoDigit = 0xffff;
 
 }  // namespace
 
-RadixSortUnit::RadixSortUnit(const PaperConfig& config, BusPort& port,
+RadixSortUnit::RadixSortUnit(const PaperConfig& config, BusPort& reads, BusPort& port,
                              std::vector<PrefixSumUnit*> psus)
     : Unit("rsu", "radix_sort", {"bus (reading)", "bus (writing)", "prefix_sum"}),
       config_(config),
@@ -21,7 +21,7 @@ RadixSortUnit::RadixSortUnit(const PaperConfig& config, BusPort& port,
       pair_size_(pair_bytes(config)),
       capacity_(config.prefix_sum.units * config.prefix_sum.section),
       port_(port),
-      reader_(port, config.bus.burst_bytes),
+      reader_(reads, config.bus.burst_bytes),
       psus_(std::move(psus)),
       begin_(radix_),
       writers_(radix_),

@@ -32,7 +32,9 @@ struct SortRound {
 
 class RadixSortUnit : public Unit {
  public:
-  RadixSortUnit(const PaperConfig& config, BusPort& port, std::vector<PrefixSumUnit*> psus);
+  /// Reads do not wait behind the writes: each have a port.
+  RadixSortUnit(const PaperConfig& config, BusPort& reads, BusPort& port,
+                std::vector<PrefixSumUnit*> psus);
 
   /// `counts`: how often each digit of this round occurs; made here where the configuration has a
   /// pass for it.

@@ -17,7 +17,10 @@ constexpr Address kIds(1 << 19);
 
 struct Sorter {
   explicit Sorter(const PaperConfig& config)
-      : bench(config), port(bench.bus.add_port("sort")), psus(make(config)), rsu(config, port, [&] {
+      : bench(config),
+        port(bench.bus.add_port("sort")),
+        psus(make(config)),
+        rsu(config, port, port, [&] {
           std::vector<PrefixSumUnit*> list;
           for (auto& psu : psus) list.push_back(psu.get());
           return list;

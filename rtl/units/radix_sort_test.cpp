@@ -283,7 +283,7 @@ Account model_round(const model::PaperConfig& config, const PipeSettings& pipe,
     pointers.push_back(psus.back().get());
     clocks.add(*psus.back());
   }
-  model::RadixSortUnit rsu(config, port, pointers);
+  model::RadixSortUnit rsu(config, port, port, pointers);
   std::vector<model::Unit*> units{&rsu};
   units.insert(units.end(), pointers.begin(), pointers.end());
   const std::vector<std::uint8_t> bytes = bytes_of(list);
