@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fasttree diff: where do the reference builder, the model and the RTL first differ, word by word?
-#include <nlohmann/json.hpp>
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -57,15 +57,16 @@ class DiffCommand : public Command {
     for (const std::string& assignment : set_) check(apply_override(config, assignment));
     if (config.architecture != "paper") {
       throw Failure{kUsage, "diff is for the paper's architecture (paper-*); " +
-                                config.architecture + " leaves other arrays behind. Compare its "
+                                config.architecture +
+                                " leaves other arrays behind. Compare its "
                                 "tree by fasttree simulate --verify."};
     }
     const LoadedScene scene = load_scene(context, scene_, most_of_memory());
 
     std::vector<Party> parties;
-    parties.push_back({"reference", take(reference_stage_arrays(
-                                        scene.view, config,
-                                        context.progress.callback("reference:")))});
+    parties.push_back(
+        {"reference", take(reference_stage_arrays(scene.view, config,
+                                                  context.progress.callback("reference:")))});
     if (rtl_ != kRtl) parties.push_back({"model", simulated(context, scene.view, config, false)});
     if (rtl_ != kModel) parties.push_back({"rtl", simulated(context, scene.view, config, true)});
     context.progress.clear();

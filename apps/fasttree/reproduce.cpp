@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fasttree reproduce: the paper's Tables II and III beside our figures.
+// fasttree reproduce: the paper's Tables I, II and III beside our figures.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,6 +24,7 @@
 #include "paper_tables.h"
 #include "progress.h"
 #include "reproduction.h"
+#include "table1.h"
 
 namespace fasttree::app {
 namespace {
@@ -71,21 +72,23 @@ std::string processor_name() {
 class ReproduceCommand : public Command {
  public:
   const char* name() const override { return "reproduce"; }
-  const char* summary() const override { return "The paper's Tables II and III beside ours"; }
+  const char* summary() const override { return "The paper's Tables I, II and III beside ours"; }
   const char* details() const override {
-    return "table2: build times of the paper's machine, simulated: the FPGA prototype, the ASIC "
+    return "table1: what synthesis makes of each unit of the RTL, beside the paper's prototype.\n"
+           "table2: build times of the paper's machine, simulated: the FPGA prototype, the ASIC "
            "as\n"
            "the paper has it (the prototype's cycles at 500 MHz), and the ASIC against the timing\n"
            "of its own memory. table3: the paper's comparison, with the simulated machines and\n"
            "this library, measured here. A scene of the paper is known by its file's name\n"
            "(bunny, sibenik, fairy_forest, conference, dragon, happy_buddha) and its count of\n"
            "triangles, within 1 %; any other goes under its own name without a paper's value.\n\n"
-           "Example:\n  fasttree reproduce table2 --scenes meshes --csv table2.csv\n"
+           "Example:\n  fasttree reproduce table1\n"
+           "  fasttree reproduce table2 --scenes meshes --csv table2.csv\n"
            "  fasttree reproduce table3 --scene bunny.ply --repeat 9";
   }
 
   void declare(Options& options) override {
-    options.positional(table_, "TABLE", "table2 or table3");
+    options.positional(table_, "TABLE", "table1, table2 or table3");
     options.text(folder_, "--scenes", "FOLDER", "All meshes of a folder");
     options.texts(scenes_, "--scene", "SCENE", "A scene; may be repeated");
     options.count(repeat_, "--repeat", "Builds of the library, for a median (table3)", 1, 1000);
@@ -96,10 +99,11 @@ class ReproduceCommand : public Command {
   }
 
   int run(Context& context) override {
+    if (table_ == "table1") return reproduce_table1(context, csv_);
     if (table_ != "table2" && table_ != "table3") {
-      const std::string near = nearest(table_, {"table2", "table3"});
+      const std::string near = nearest(table_, {"table1", "table2", "table3"});
       throw Failure{kUsage,
-                    fmt::format("there is no table '{}'; give table2 or table3{}", table_,
+                    fmt::format("there is no table '{}'; give table1, table2 or table3{}", table_,
                                 near.empty() ? "" : fmt::format("; did you mean {}?", near))};
     }
     if (folder_.empty() && scenes_.empty()) {

@@ -138,7 +138,8 @@ class SimulateCommand : public Command {
     return options;
   }
   [[noreturn]] void wrong_wave() const {
-    throw Failure{kUsage, "--wave " + wave_ + " is not FROM:TO, two cycles of the build, the first " +
+    throw Failure{kUsage, "--wave " + wave_ +
+                              " is not FROM:TO, two cycles of the build, the first " +
                               "less than the second, such as 1000:3000"};
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verilated accelerator as a whole: every array against the reference builder's, with every kind
-// of memory; what it refuses; and that it goes on working afterwards.
+// The verilated accelerator as a whole: every array against the reference builder's, with every
+// kind of memory; what it refuses; and that it goes on working afterwards.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -86,8 +86,9 @@ TEST(RtlMachine, MakesTheReferencesArraysOfAThousandRandomScenes) {
   fasttree::test::Random random(2014);
   for (int i = 0; i < 1000; ++i) {
     SCOPED_TRACE(i);
-    const fasttree::test::OwnedMesh mesh = fasttree::test::soup(
-        random.below(60), random.below(1u << 30), std::vector<float>{0.02f, 0.2f, 1.0f}[random.below(3)]);
+    const fasttree::test::OwnedMesh mesh =
+        fasttree::test::soup(random.below(60), random.below(1u << 30),
+                             std::vector<float>{0.02f, 0.2f, 1.0f}[random.below(3)]);
     MachineConfig config = machine(random.below(static_cast<std::uint32_t>(variants().size())));
     config.paper.grid.axes = random.below(2) ? AxisSchedule::cyclic : AxisSchedule::longest;
     config.paper.grid.depth_fixed = random.below(2) != 0;
@@ -96,8 +97,7 @@ TEST(RtlMachine, MakesTheReferencesArraysOfAThousandRandomScenes) {
     config.clock_mhz = std::vector<double>{50, 163, 500, 1234.5}[random.below(4)];
     RtlOptions rtl;
     rtl.wild_seed = random.below(4) == 0 ? 0 : 1 + random.below(1u << 30);
-    const Result<SimulationResult> result =
-        simulate(mesh.view(), config, rtl, random_pipe(random));
+    const Result<SimulationResult> result = simulate(mesh.view(), config, rtl, random_pipe(random));
     ASSERT_TRUE(result.ok()) << result.status().message();
     ASSERT_EQ(difference(mesh.view(), config, result.value()), "");
   }
@@ -201,9 +201,9 @@ StatusCode code_of(const RtlOptions& rtl, std::string* message = nullptr,
 }
 
 TEST(RtlMachine, RefusesACoordinateThatIsNotFinite) {
-  for (const float value : {std::numeric_limits<float>::quiet_NaN(),
-                            std::numeric_limits<float>::infinity(),
-                            -std::numeric_limits<float>::infinity()}) {
+  for (const float value :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+        -std::numeric_limits<float>::infinity()}) {
     for (const std::uint32_t at : {0u, 8u, 4711u, 17999u}) {
       RtlOptions rtl;
       rtl.tamper = [&](ft_accel_order& order, model::ByteStore& store) {
@@ -371,7 +371,9 @@ TEST(RtlMachine, GoesOnAfterWhateverHasEndedABuild) {
       ft_accel_cancel(&device);
     }
     std::uint32_t cycles = 0;
-    while (ft_accel_busy(&device)) ASSERT_LT(++cycles, 100000u) << "hangs, status " << device.read(device.context, FT_ACCEL_STATUS) << " kind " << kind;
+    while (ft_accel_busy(&device))
+      ASSERT_LT(++cycles, 100000u)
+          << "hangs, status " << device.read(device.context, FT_ACCEL_STATUS) << " kind " << kind;
     const std::uint32_t error = ft_accel_error(&device);
     constexpr std::uint32_t kErrors[] = {FT_ACCEL_REFERENCES, FT_ACCEL_LEAVES, FT_ACCEL_WINDOW,
                                          FT_ACCEL_NOT_FINITE};

@@ -49,9 +49,8 @@ Status failure(std::uint32_t error, const ft_accel_result& result) {
     case FT_ACCEL_MEMORY:
       return Status(StatusCode::io_error, "memory answered the accelerator with an error");
     case FT_ACCEL_WINDOW:
-      return Status(StatusCode::bad_input,
-                    "the accelerator was led to address " + detail +
-                        ", outside its window of memory, and left it alone");
+      return Status(StatusCode::bad_input, "the accelerator was led to address " + detail +
+                                               ", outside its window of memory, and left it alone");
     case FT_ACCEL_CANCELLED:
       return Status(StatusCode::cancelled, "the build was cancelled");
     case FT_ACCEL_TIMEOUT:
@@ -67,13 +66,12 @@ Status failure(std::uint32_t error, const ft_accel_result& result) {
 Result<ft_accel_order> plan(const model::PaperConfig& config, const model::HostOrder& host) {
   const auto depth = static_cast<std::uint32_t>(host.depth);
   if (config.radix_sort.sorted_bits < depth) {
-    return Status(StatusCode::invalid_argument,
-                  "codes have " + std::to_string(depth) +
-                      " bits, more than radix_sort_sorted_bits keep");
+    return Status(StatusCode::invalid_argument, "codes have " + std::to_string(depth) +
+                                                    " bits, more than radix_sort_sorted_bits keep");
   }
   ft_accel_order order{};
-  const std::uint64_t bytes = ft_accel_plan(&order, 0, host.triangles,
-                                            static_cast<std::uint32_t>(host.references), depth);
+  const std::uint64_t bytes =
+      ft_accel_plan(&order, 0, host.triangles, static_cast<std::uint32_t>(host.references), depth);
   const std::uint64_t limit = std::uint64_t{config.control.memory_mbytes} << 20;
   if (bytes == 0 || bytes > limit) {
     return Status(StatusCode::resource_limit,

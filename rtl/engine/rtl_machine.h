@@ -24,7 +24,8 @@ struct RtlOptions {
   std::uint64_t wave_from = 0;
   std::uint64_t wave_to = ~std::uint64_t{0};
 
-  /// Memory answers in the wildest way that AXI allows (AxiMemoryOptions::wild), by this seed; 0: no.
+  /// Memory answers in the wildest way that AXI allows (AxiMemoryOptions::wild), by this seed; 0:
+  /// no.
   std::uint32_t wild_seed = 0;
   /// For tests: breaks something in memory before the build.
   std::function<void(AxiMemory&)> spoil;

@@ -28,7 +28,8 @@ class VerilatedTop : public Top {
   ~VerilatedTop() override {
     VerilatedTop::close_wave();
     model_->final();
-    // Verilator's destructors look at the thread's context, which may be that of another, gone model.
+    // Verilator's destructors look at the thread's context, which may be that of another, gone
+    // model.
     Verilated::threadContextp(&context_);
     model_.reset();
   }

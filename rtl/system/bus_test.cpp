@@ -169,9 +169,15 @@ TEST(RtlBus, EndsAndTellsOfErrors) {
     bus.bench.unit.rd_ready = bus.bench.unit.rdd_ready = 1;
     ASSERT_TRUE(bus.settle());
     EXPECT_TRUE(bus.bench.unit.axi_error);
-    if (way == 0) EXPECT_LE(bus.bench.unit.axi_error_id, 1u);
-    if (way == 1) EXPECT_GE(bus.bench.unit.axi_error_id, 16u);
-    if (way == 2) EXPECT_EQ(bus.bench.unit.axi_error_id, 16u + 3);
+    if (way == 0) {
+      EXPECT_LE(bus.bench.unit.axi_error_id, 1u);
+    }
+    if (way == 1) {
+      EXPECT_GE(bus.bench.unit.axi_error_id, 16u);
+    }
+    if (way == 2) {
+      EXPECT_EQ(bus.bench.unit.axi_error_id, 16u + 3);
+    }
     EXPECT_EQ(bus.bench.failed_assertions(), 0);
     bus.bench.unit.clear = 1;
     bus.step();
