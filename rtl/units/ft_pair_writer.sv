@@ -104,8 +104,8 @@ module ft_pair_writer #(
       logic [63:0] held;
       assign wr_data[64*s+:64] = s == Slots - 2 && place != LastPlace ? front[63:0] : held;
       always_ff @(posedge clk) begin
-        if (take0 && place == PlaceBits'(s)) held <= front[63:0];
-        else if (take1 && place == PlaceBits'(s - 1)) held <= second[63:0];
+        if (keep0 && place == PlaceBits'(s)) held <= front[63:0];
+        else if (keep1 && place == PlaceBits'(s - 1)) held <= second[63:0];
       end
     end
   end
