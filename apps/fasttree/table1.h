@@ -8,8 +8,8 @@
 
 namespace fasttree::app {
 
-/// Prints it, and writes it as CSV and JSON where asked for. 0, or 1 where the design is larger than
-/// the paper's.
+/// Prints it, and writes it as CSV and JSON where asked for. 0, or 1 where the design is larger
+/// than the paper's.
 int reproduce_table1(Context& context, const std::string& csv);
 
 }  // namespace fasttree::app
