@@ -22,7 +22,7 @@ constexpr double kSelectRegisters = 1415.0 / 16;
 // A subtraction and a multiplication of binary32 without DSP blocks, from what Table I's MCGU row
 // leaves after its box and its iteration.
 constexpr double kQuantiserLuts = 1150;
-constexpr double kQuantiserStage = 96;  // registers a stage
+constexpr double kQuantiserStage = 40;  // registers a stage, what Table I has room for at seven
 // A split plane's coordinate and its value, our RTL without DSP blocks.
 constexpr double kPlaneLuts = 3100;
 constexpr double kPlaneStage = 42;  // registers a stage
