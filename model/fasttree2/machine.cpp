@@ -7,6 +7,7 @@
 #include "model/fasttree2/control.h"
 #include "model/fasttree2/host.h"
 #include "model/memory/byte_store.h"
+#include "model/memory/make_memory.h"
 
 namespace fasttree::model::ft2 {
 
@@ -30,6 +31,9 @@ Result<SimulationResult> run(const MeshView& mesh, const std::string& name,
                              Figures* figures) {
   const Result<HostPlan> plan = make_plan(mesh, config);
   if (!plan.ok()) return plan.status();
+  if (Status status = check_capacity(memory.traits(), plan.value().layout.bytes); !status.ok()) {
+    return status;
+  }
   ByteStore store(plan.value().layout.bytes);
   upload_scene(mesh, plan.value().layout.scene, store);
 

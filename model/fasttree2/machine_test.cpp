@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "fasttree/build.h"
+#include "model/config/machine_config.h"
 #include "model/fasttree2/test_memory.h"
 #include "tests/support/meshes.h"
 
@@ -335,6 +336,15 @@ TEST(FastTree2, RefusesBadInputAndConfigurations) {
   mesh.positions[7].y = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(run(mesh.view(), "test", FastTree2Config(), 500, memory, {}).status().code(),
             StatusCode::bad_input);
+}
+
+TEST(FastTree2, RefusesASceneThatItsMemoryDoesNotHold) {
+  const test::OwnedMesh mesh = test::soup(20000, 8, 0.02f);
+  MachineConfig config = load_config("fasttree-2").value();
+  EXPECT_TRUE(simulate_fasttree2(mesh.view(), config, {}).ok());
+  config.memory.dram.rows = 1;
+  EXPECT_EQ(simulate_fasttree2(mesh.view(), config, {}).status().code(),
+            StatusCode::resource_limit);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ class TestMemory : public Memory {
     std::uint64_t answers = ~0ull;  ///< after so many it is silent
   };
   explicit TestMemory(const Shape& shape) : shape_(shape) {
-    traits_ = {"test", 2, shape.access_bytes, 0};
+    traits_ = {"test", 2, shape.access_bytes, 0, 0};
   }
 
   const MemoryTraits& traits() const override { return traits_; }

@@ -12,7 +12,8 @@ DramMemory::DramMemory(const MemoryConfig& config)
     : map_(config.dram, config.controller),
       tck_ps_(config.dram.tck_ps),
       traits_{config.preset, config.dram.channels, config.dram.access_bytes(),
-              config.dram.peak_gb_s()} {
+              config.dram.peak_gb_s(),
+              std::uint64_t{config.dram.channels} * config.dram.channel_bytes()} {
   statistics_.read_latency_8ns.resize(kLatencyBuckets);
   channels_.reserve(config.dram.channels);
   for (std::uint32_t i = 0; i < config.dram.channels; ++i) {

@@ -11,7 +11,7 @@ namespace fasttree::model {
 
 SimpleMemory::SimpleMemory(const MemoryConfig& config) {
   const bool ideal = config.kind == MemoryKind::ideal;
-  traits_ = {config.preset, 1, config.access_bytes, ideal ? 0 : config.bandwidth_gb_s};
+  traits_ = {config.preset, 1, config.access_bytes, ideal ? 0 : config.bandwidth_gb_s, 0};
   queue_ = ideal ? 0 : config.fixed_queue;
   latency_ps_ = ideal ? 0 : static_cast<std::uint64_t>(std::llround(config.latency_ns * 1000));
   access_ps_ = traits_.peak_gb_s > 0 ? 1000.0 * config.access_bytes / traits_.peak_gb_s : 0;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/system/paper_machine.h"
 
-#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -173,15 +172,8 @@ Status validate(const PaperConfig& config) {
 Result<SimulationResult> simulate_paper(const MeshView& mesh, const MachineConfig& config,
                                         const SimulationOptions& options) {
   if (Status status = validate(config.memory); !status.ok()) return status;
-  MachineConfig machine = config;
-  if (config.memory.kind == MemoryKind::dram) {
-    // The device may hold less than the plan is allowed.
-    const DramSpec& dram = config.memory.dram;
-    const auto mbytes = static_cast<std::uint32_t>((dram.channels * dram.channel_bytes()) >> 20);
-    machine.paper.control.memory_mbytes = std::min(machine.paper.control.memory_mbytes, mbytes);
-  }
   const std::unique_ptr<Memory> memory = make_memory(config.memory);
-  return simulate_paper(mesh, machine, options, *memory);
+  return simulate_paper(mesh, config, options, *memory);
 }
 
 Result<SimulationResult> simulate_paper(const MeshView& mesh, const MachineConfig& machine,
@@ -200,6 +192,9 @@ Result<SimulationResult> simulate_paper(const MeshView& mesh, const MachineConfi
   const Result<MemoryMap> map =
       plan_memory(config, mesh.triangle_count, order.value().references, order.value().depth);
   if (!map.ok()) return map.status();
+  if (Status status = check_capacity(memory.traits(), map.value().bytes); !status.ok()) {
+    return status;
+  }
 
   ByteStore store(map.value().bytes);
   write_scene(mesh, map.value(), store);

@@ -321,6 +321,11 @@ TEST(PaperMachine, RefusesWhatItCannotBuild) {
   const fasttree::test::OwnedMesh mesh = fasttree::test::soup(20000, 8, 0.02f);
   EXPECT_EQ(simulate(mesh.view(), config).status().code(), StatusCode::resource_limit);
   config = machine();
+  EXPECT_TRUE(simulate_paper(mesh.view(), config, SimulationOptions()).ok());
+  config.memory.dram.rows = 1;
+  EXPECT_EQ(simulate_paper(mesh.view(), config, SimulationOptions()).status().code(),
+            StatusCode::resource_limit);
+  config = machine();
   config.paper.radix_sort.sorted_bits = 8;
   EXPECT_EQ(simulate(mesh.view(), config).status().code(), StatusCode::invalid_argument);
   config = machine();

@@ -196,6 +196,7 @@ Result<SimulationResult> simulate_rtl(const MeshView& mesh, const model::Machine
   if (!planned.ok()) return planned.status();
   ft_accel_order order = planned.value();
   const model::MemoryMap map = map_of(order);
+  if (Status status = check_capacity(memory.traits(), map.bytes); !status.ok()) return status;
   model::ByteStore store(map.bytes);
   write_scene(mesh, map, store);
   if (rtl.tamper) rtl.tamper(order, store);
