@@ -25,11 +25,10 @@ module ft_block_writer #(
   logic [31:0] first;                        // address of the first item held, or of the next to come
   logic [ItemBits:0] held;                   // items
   logic [8*BLOCK-1:0] block, merged;
-  logic [ItemBits-1:0] place;                // of the next item in its block
-  logic last;                                // it completes the block
+  logic [ItemBits-1:0] place, next_place;    // of the next item in its block, and of the one behind
+  logic last;                                // place is a block's last
 
-  assign place     = first[ItemShift+:ItemBits] + held[ItemBits-1:0];
-  assign last      = &place;
+  assign next_place = place + 1'b1;
   assign holds     = held != '0;
   assign put_ready = !last || wr_ready;
   assign wr_valid  = flush ? holds : put_valid && last;
@@ -39,14 +38,22 @@ module ft_block_writer #(
 
   always_comb begin
     merged = block;
-    // Item by item: a part chosen by a variable would be built as a shifter.
+    // Item by item: a part chosen by a variable would be built as a shifter. Where nothing is put,
+    // it changes what is not part of the request.
     for (int i = 0; i < Items; i++) begin
-      if (put_valid && place == ItemBits'(i)) merged[8*ITEM*i+:8*ITEM] = put_data;
+      if (place == ItemBits'(i)) merged[8*ITEM*i+:8*ITEM] = put_data;
     end
   end
 
   always_ff @(posedge clk) begin
     if (put_valid && put_ready) block <= merged;
+    if (start) begin
+      place <= addr[ItemShift+:ItemBits];
+      last  <= &addr[ItemShift+:ItemBits];
+    end else if (put_valid && put_ready) begin
+      place <= next_place;
+      last  <= &next_place;
+    end
     if (start) begin
       first <= addr;
       held  <= '0;

@@ -97,14 +97,17 @@ module ft_control (
   logic [31:0] still;  // cycles in which nothing has moved
   logic timeout, busy, building;
 
-  // ---- What is wrong with an order, before anything is touched.
+  // ---- What is wrong with an order, before anything is touched. An order stands in its registers
+  // for two cycles before its start (ft_registers answers one write before it takes the next), so
+  // what follows from it may come that much later.
   logic [37:0] scene_needs;
+  logic [31:0] scene_bytes;
   logic [31:0] marks_need;
-  logic [31:0] bad_word;
-  logic order_bad;
+  logic [31:0] bad_word, wrong_word;
+  logic [3:0]  last_round;
+  logic order_bad, order_wrong, scene_large;
 
   assign scene_needs = {order.triangles, 5'd0} + {3'd0, order.triangles, 2'd0} + 38'd0;
-  assign marks_need  = order.shape[4:0] < 5'd8 ? 32'd64 : 32'd1 << (order.shape[4:0] - 5'd2);
 
   always_comb begin
     order_bad = 1'b1;
@@ -129,18 +132,27 @@ module ft_control (
     else order_bad = 1'b0;
   end
 
+  always_ff @(posedge clk) begin
+    marks_need  <= order.shape[4:0] < 5'd8 ? 32'd64 : 32'd1 << (order.shape[4:0] - 5'd2);
+    order_wrong <= order_bad;
+    wrong_word  <= bad_word;
+    scene_large <= scene_needs > {6'd0, order.scene_bytes};
+    scene_bytes <= scene_needs[31:0];
+    last_round  <= order.rounds[3:0] - 1'b1;
+    // A launch begins the count anew.
+    timeout     <= !launch && order.watchdog != '0 && still >= order.watchdog;
+  end
+
   // ---- What has gone wrong; the first of these that holds. What a unit says of the build before it
   // forgets with its start.
-  assign timeout = order.watchdog != '0 && still >= order.watchdog;
-
   always_comb begin
     found        = ft_pkg::ErrorNone;
     found_detail = 32'd0;
     if (cancel) found = ft_pkg::ErrorCancelled;
-    else if (phase == Check && order_bad) begin
+    else if (phase == Check && order_wrong) begin
       found        = ft_pkg::ErrorOrder;
-      found_detail = bad_word;
-    end else if (phase == Check && scene_needs > {6'd0, order.scene_bytes}) begin
+      found_detail = wrong_word;
+    end else if (phase == Check && scene_large) begin
       found        = ft_pkg::ErrorScene;
       found_detail = order.scene_bytes;
     end else if (bus_error) begin
@@ -241,14 +253,14 @@ module ft_control (
   assign bus_clear    = build_start;
 
   assign sort_round = round;
-  assign sort_last  = 32'(round) + 32'd1 == order.rounds;
+  assign sort_last  = round == last_round;
   assign odd_round  = round[0];
   assign sort_to    = sort_last ? order.sorted_codes : odd_round ? order.pairs0 : order.pairs1;
 
   always_comb begin
     stream_start = launch;
     stream_addr  = order.scene;
-    stream_bytes = scene_needs[31:0];
+    stream_bytes = scene_bytes;
     case (phase)
       Bounds, Codes: begin
       end

@@ -42,18 +42,19 @@ module ft_stream_reader #(
 
   logic [31:BurstShift] next;        // burst to ask for
   logic [31:BurstShift] bursts;      // whole ones still to ask for
-  logic [BurstShift-1:2] tail;       // words behind them
+  logic [BeatBits-1:0] tail;         // beats of the part of a burst behind them
   logic [BeatBits-1:0] beats;        // of the burst to ask for
   logic [CountBits-1:0] reserved;    // beats asked for or in the queue
   logic [FlightBits-1:0] in_flight;  // bursts
   logic [BeatBits-1:0] zeros;        // beats of zeros to be made up
-  logic left, room, outside, ask, make_up, push, pop, queue_valid, queue_ready;
+  logic whole, left, room, outside, ask, make_up, push, pop, queue_valid, queue_ready;
   logic [CountBits-1:0] queue_count;
 
-  assign left  = bursts != '0 || tail != '0;
-  assign beats = bursts != '0 ? BeatBits'(BURST / BUS_BYTES)
-                              : BeatBits'((32'(tail) + BUS_BYTES / 4 - 1) >> (BusShift - 2));
-  assign room  = 32'(reserved) + 32'(beats) <= Depth && zeros == '0;
+  assign whole = bursts != '0;
+  assign left  = whole || tail != '0;
+  assign beats = whole ? BeatBits'(BURST / BUS_BYTES) : tail;
+  // Room for a whole burst, though the last one may be shorter: a comparison with a constant.
+  assign room  = 32'(reserved) <= Depth - BURST / BUS_BYTES && zeros == '0;
 
   ft_window u_window (
       .block(next[31:6]),
@@ -113,10 +114,10 @@ module ft_stream_reader #(
       end else if (start) begin
         next   <= addr[31:BurstShift];
         bursts <= bytes[31:BurstShift];
-        tail   <= bytes[BurstShift-1:2];
+        tail   <= BeatBits'((32'(bytes[BurstShift-1:2]) + BUS_BYTES / 4 - 1) >> (BusShift - 2));
       end else if (ask || make_up) begin
         next <= next + 1'b1;
-        if (bursts != '0) bursts <= bursts - 1'b1;
+        if (whole) bursts <= bursts - 1'b1;
         else tail <= '0;
       end
       reserved <= reserved + (ask || make_up ? CountBits'(beats) : '0) - CountBits'(pop);

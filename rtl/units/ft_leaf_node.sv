@@ -92,7 +92,7 @@ module ft_leaf_node #(
   // Moving on: the lowest flag of those left. The codes themselves are in a memory of four blocks:
   // the one that is loaded, the one whose flags are here, and the one before it, of which a leaf may
   // wait for the pool.
-  logic                 pick, pool_ready;
+  logic                 pick, pool_ready, several;
   logic [BlockBits-1:0] flags_block;
   logic                 picked;
   logic [31:0]          picked_base;
@@ -103,7 +103,23 @@ module ft_leaf_node #(
   assign rest    = flags & ~lowest;
   assign moving  = flags != '0;
   assign pick    = moving && (!picked || pool_ready);
-  assign compare = full && (!moving || (pick && rest == '0));
+  assign compare = full && (!moving || (pick && !several));
+
+  // More than one flag is left: two of them differ in some bit of their index. `rest` comes too late
+  // out of its carry to say so.
+  logic at_zero, at_one;
+  always_comb begin
+    several = 1'b0;
+    for (int bit_index = 0; bit_index < IndexBits; bit_index++) begin
+      at_zero = 1'b0;
+      at_one  = 1'b0;
+      for (int i = 0; i < WIDTH; i++) begin
+        if (((i >> bit_index) & 1) == 0) at_zero = at_zero | flags[i];
+        else at_one = at_one | flags[i];
+      end
+      several = several | (at_zero & at_one);
+    end
+  end
 
   always_comb begin
     place = '0;
@@ -185,8 +201,8 @@ module ft_leaf_node #(
   end
 
   // To memory: the code and the row together, while there is room in the table.
+  logic [31:0] room;  // leaves that still fit
   logic fits, empty, code_ready, table_ready, put, flush, code_holds, row_holds;
-  assign fits      = leaves != leaf_capacity;
   assign empty     = references == '0;
   assign row_ready = !fits || (code_ready && table_ready);
   assign put       = row_valid && row_ready && fits;
@@ -197,8 +213,14 @@ module ft_leaf_node #(
     if (rst || start) begin
       leaves   <= '0;
       overflow <= 1'b0;
+      room     <= leaf_capacity;
+      fits     <= leaf_capacity != '0;
     end else begin
-      if (put && !empty) leaves <= leaves + 1'b1;
+      if (put && !empty) begin
+        leaves <= leaves + 1'b1;
+        room   <= room - 1'b1;
+        fits   <= room[31:1] != '0;
+      end
       if (row_valid && !fits) overflow <= 1'b1;
     end
   end
