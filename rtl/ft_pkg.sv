@@ -102,7 +102,7 @@ package ft_pkg;
 
   localparam logic [31:0] Id = 32'h4654_5245;  // "FTRE"
   localparam logic [31:0] Version = 32'h0000_0001;
-  // Cycles from operands to result: ft_float_sub, ft_float_mul with WIDE, both one after the other.
+  // Cycles from operands to result: ft_float_sub, ft_float_mul, both one after the other.
   localparam int FloatSubLatency = 3;
   localparam int FloatMulLatency = 3;
   localparam int QuantiserLatency = FloatSubLatency + FloatMulLatency;

@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// a - b in binary32, rounded to nearest even, of finite values; subnormals in full. A difference
-// every cycle, ft_pkg::FloatSubLatency (3) cycles later.
+// a - b of finite binary32 values, subnormals in full, rounded to nearest even. A difference every
+// cycle, ft_pkg::FloatSubLatency (3) cycles later.
 //
-// With WIDE the result is {sign, 9 bits of exponent biased by 127 + 32, fraction}, always with a
-// one before the point, and exponent 0 for zero alone: subnormal differences are normalised and
-// large ones do not overflow. That is what ft_float_mul takes, which then needs no stage for it.
-module ft_float_sub #(
-    parameter int WIDE = 0
-) (
-    input  logic                 clk,
-    input  logic [31:0]          a,
-    input  logic [31:0]          b,
-    output logic [31+WIDE:0]     difference
+// It is {sign, 9 bits of exponent biased by 127 + 32, fraction}, always with a one before the point,
+// and exponent 0 for zero alone: subnormal differences are normalised and large ones do not
+// overflow, so that ft_float_mul needs no stage for either.
+module ft_float_sub (
+    input  logic        clk,
+    input  logic [31:0] a,
+    input  logic [31:0] b,
+    output logic [32:0] difference
 );
-  localparam int ExponentBits = 8 + WIDE;
-  localparam logic [ExponentBits-1:0] Bias = ExponentBits'(32 * WIDE);
+  localparam logic [8:0] Bias = 9'd32;
 
   // 1: the larger magnitude first, and how far the smaller one has to move. Subnormals have the
   // exponent of the smallest normal values.
@@ -62,58 +59,49 @@ module ft_float_sub #(
 
   // 3: where the highest one is among the upper three places, round; it moves by a place at most.
   // Elsewhere the exponents differed by one at most: nothing is lost, and only places count.
-  logic stay, back_one, one_left;
-  logic [23:0] far_mantissa, near_mantissa, stop;
+  logic back_one;
+  logic [23:0] far_mantissa, near_mantissa;
   logic [4:0] near_count;
   logic half, rest, up;
-  logic [ExponentBits-1:0] far_exponent, near_exponent, far_field, near_field;
-  logic [ExponentBits+22:0] far, near;
+  logic [8:0] far_exponent, near_exponent, far_field, near_field;
+  logic [31:0] far, near;
 
-  assign stay     = sum2[26] || (WIDE == 0 && exponent2 == 8'd1);
-  assign one_left = sum2[25] || (WIDE == 0 && exponent2 == 8'd2);
   always_comb begin
     if (sum2[27]) begin
       far_mantissa = sum2[27:4];
       half         = sum2[3];
       rest         = |sum2[2:0];
-      far_exponent = ExponentBits'(exponent2) + Bias + 1'b1;
-    end else if (stay) begin
+      far_exponent = 9'(exponent2) + Bias + 1'b1;
+    end else if (sum2[26]) begin
       far_mantissa = sum2[26:3];
       half         = sum2[2];
       rest         = |sum2[1:0];
-      far_exponent = ExponentBits'(exponent2) + Bias;
+      far_exponent = 9'(exponent2) + Bias;
     end else begin
       far_mantissa = sum2[25:2];
       half         = sum2[1];
       rest         = sum2[0];
-      far_exponent = ExponentBits'(exponent2) + Bias - 1'b1;
+      far_exponent = 9'(exponent2) + Bias - 1'b1;
     end
   end
   assign up        = half && (rest || far_mantissa[0]);
   assign far_field = far_mantissa[23] ? far_exponent : '0;
   // A carry out of the fraction is one more in the exponent.
-  assign far       = {far_field, far_mantissa[22:0]} + (ExponentBits + 23)'(up);
+  assign far       = {far_field, far_mantissa[22:0]} + 32'(up);
 
-  // Not further than to the exponent of subnormals.
-  always_comb begin
-    stop = '0;
-    for (int i = 0; i < 24; i++) stop[i] = WIDE == 0 && exponent2 == 8'(26 - i);
-  end
   ft_normalise normalise (
       .value  (sum2[24:1]),
-      .stop   (stop),
       .shifted(near_mantissa),
       .count  (near_count)
   );
-  assign near_exponent = ExponentBits'(exponent2) + (Bias - ExponentBits'(2)) - ExponentBits'(near_count);
+  assign near_exponent = 9'(exponent2) + (Bias - 9'(2)) - 9'(near_count);
   assign near_field    = near_mantissa[23] ? near_exponent : '0;
   assign near          = {near_field, near_mantissa[22:0]};
 
-  assign back_one = sum2[27] || stay || one_left;
+  assign back_one = |sum2[27:25];
   always_ff @(posedge clk) begin
     // Equal values differ by plus zero.
-    difference[31+WIDE]   <= sign2 && !(opposed2 && sum2 == '0);
-    difference[30+WIDE:0] <= back_one ? far : near;
-    if (WIDE == 0 && sum2[27] && exponent2 == 8'd254) difference[22:0] <= '0;  // infinity
+    difference[32]   <= sign2 && !(opposed2 && sum2 == '0);
+    difference[31:0] <= back_one ? far : near;
   end
 endmodule

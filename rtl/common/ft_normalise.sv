@@ -1,26 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shifts a mantissa left until its highest one is at the top, or until the one of `stop` is there:
-// by nibbles first, then by bits, so that no count of single zeros is waited for.
+// Shifts a mantissa left until its highest one is at the top: by nibbles first, then by bits, so that
+// no count of single zeros is waited for.
 module ft_normalise (
     input  logic [23:0] value,
-    input  logic [23:0] stop,
     output logic [23:0] shifted,
-    output logic [4:0]  count    // 23 where both are zero
+    output logic [4:0]  count    // 23 where there is none
 );
-  logic [23:0] marked, coarse_value;
+  logic [23:0] coarse_value;
   logic [2:0] top;  // of the nibble with the highest one
   logic [2:0] coarse;
   logic [1:0] fine;
 
-  assign marked = value | stop;
-
   always_comb begin
     coarse = 3'd5;
-    top    = marked[3:1];
+    top    = value[3:1];
     for (int i = 1; i < 6; i++) begin
-      if (|marked[4*i+:4]) begin
+      if (|value[4*i+:4]) begin
         coarse = 3'(5 - i);
-        top    = marked[4*i+1+:3];
+        top    = value[4*i+1+:3];
       end
     end
   end

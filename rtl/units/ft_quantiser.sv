@@ -19,49 +19,49 @@ module ft_quantiser (
   // What goes with the value to where it is needed: shift registers without reset.
   logic [Latency-1:0] valid;
   logic [31:0] scale[0:SubLatency-1];
-  logic [3:0] bits[0:Latency-1];
+  logic [3:0] bits[0:Latency-2];
   always_ff @(posedge clk) begin
     scale[0] <= in_scale;
     bits[0]  <= in_bits;
     for (int i = 1; i < SubLatency; i++) scale[i] <= scale[i-1];
-    for (int i = 1; i < Latency; i++) bits[i] <= bits[i-1];
+    for (int i = 1; i < Latency - 1; i++) bits[i] <= bits[i-1];
     if (rst) valid <= '0;
     else valid <= {valid[Latency-2:0], in_valid};
   end
   assign out_valid = valid[Latency-1];
 
   // A difference beyond binary32 needs no infinity: every scale that is not zero takes it out of
-  // the grid.
+  // the grid. Of 15 bits the upper `bits` are the integer part of the product moved by the others.
   logic [32:0] difference;
-  logic [22:0] x;  // as binary32, without the fraction's low bits
+  logic [22:0] x;  // the product as binary32, without the fraction's low bits
   logic [8:0] unused_fraction;
-  ft_float_sub #(
-      .WIDE(1)
-  ) sub (
+  ft_float_sub sub (
       .clk       (clk),
       .a         (in_value),
       .b         (in_lo),
       .difference(difference)
   );
-  ft_float_mul #(
-      .WIDE(1)
-  ) mul (
+  ft_float_mul mul (
       .clk    (clk),
       .a      (difference),
       .b      (scale[SubLatency-1]),
+      .down   (4'd15 - bits[SubLatency-1]),
       .product({x, unused_fraction})
   );
 
-  // The integer part's 15 places below 2^15, moved by what the exponent and the bits say at once.
+  // The integer part, at most 2^bits - 1.
   logic outside, none;
-  logic [4:0] shift;
-  logic [14:0] places;
+  logic [7:0] limit;  // the exponent of 2^bits
+  logic [14:0] most, places;
+  always_ff @(posedge clk) begin
+    limit <= 8'd127 + 8'(bits[Latency-2]);
+    for (int i = 0; i < 15; i++) most[i] <= 4'(i) < bits[Latency-2];
+  end
   assign none     = x[22] || x[21:14] < 8'd127;
-  assign outside  = x[21:14] >= 8'd142;
-  // 141 - exponent to drop the fraction, and 15 - bits; only the low bits of the sum matter.
-  assign shift    = 5'd28 - (outside ? 5'd13 : x[18:14]) - 5'(bits[Latency-1]);
-  assign places   = outside ? '1 : {1'b1, x[13:0]};
-  assign out_cell = none ? '0 : places >> shift;
+  assign outside  = x[21:14] >= limit;
+  // 141 - exponent, of which only the low bits matter.
+  assign places   = {1'b1, x[13:0]} >> (4'd13 - x[17:14]);
+  assign out_cell = none ? '0 : outside ? most : places;
 
 `ifndef SYNTHESIS
   always_ff @(posedge clk) begin
