@@ -31,8 +31,8 @@ struct MemoryCompletion {
 struct MemoryTraits {
   std::string name;
   std::uint32_t channels = 1;
-  std::uint32_t access_bytes = 32;  ///< what one burst moves; requests do not cross such granules
-  double peak_gb_s = 0;             ///< 10^9 bytes a second; 0: unlimited
+  std::uint32_t access_bytes = 32;   ///< what one burst moves; requests do not cross such granules
+  double peak_gb_s = 0;              ///< 10^9 bytes a second; 0: unlimited
   std::uint64_t capacity_bytes = 0;  ///< from address 0; 0: whatever is asked for
 };
 
