@@ -94,7 +94,7 @@ module ft_float_sub (
       .shifted(near_mantissa),
       .count  (near_count)
   );
-  assign near_exponent = 9'(exponent2) + (Bias - 9'(2)) - 9'(near_count);
+  assign near_exponent = 9'(exponent2) + (Bias - 9'd2) - 9'(near_count);
   assign near_field    = near_mantissa[23] ? near_exponent : '0;
   assign near          = {near_field, near_mantissa[22:0]};
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The registers behind an AXI4-Lite slave: what the host orders, how the build goes, what it found.
 // The map is in docs/accelerator/integration.md and, for drivers, in rtl/driver/fasttree_accel.h.
-// One transaction of each direction at a time; unknown addresses read as zero and ignore writes;
-// orders are taken at any time but are used by the next start.
+// One transaction of each direction at a time; unknown addresses read as zero and ignore writes, and
+// so does the order during a build: the units read it from here.
 module ft_registers #(
     parameter logic [31:0] CAPABILITIES = 32'd0,
     parameter int WATCHDOG = 1 << 20  // cycles in which nothing moves before a build gives up
@@ -90,7 +90,7 @@ module ft_registers #(
         if (write_word == InterruptEnable && s_axi_wstrb[0]) irq_enable <= s_axi_wdata[0];
         if (write_word == InterruptStatus && s_axi_wstrb[0] && s_axi_wdata[0]) done_seen <= 1'b0;
         for (int w = 0; w < ft_pkg::OrderWords; w = w + 1) begin
-          if (write_word == FirstOrder + 10'(w)) begin
+          if (!state.busy && write_word == FirstOrder + 10'(w)) begin
             words[32*w+:32] <= (words[32*w+:32] & ~write_mask) | (s_axi_wdata & write_mask);
           end
         end
