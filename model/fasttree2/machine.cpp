@@ -7,7 +7,7 @@
 #include "model/fasttree2/control.h"
 #include "model/fasttree2/host.h"
 #include "model/memory/byte_store.h"
-#include "model/memory/make_memory.h"
+#include "model/memory/capacity.h"
 
 namespace fasttree::model::ft2 {
 

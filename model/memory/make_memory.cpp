@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/memory/make_memory.h"
 
-#include <string>
-
 #include "model/memory/dram_memory.h"
 #include "model/memory/simple_memory.h"
 
@@ -11,14 +9,6 @@ namespace fasttree::model {
 std::unique_ptr<Memory> make_memory(const MemoryConfig& config) {
   if (config.kind == MemoryKind::dram) return std::make_unique<DramMemory>(config);
   return std::make_unique<SimpleMemory>(config);
-}
-
-Status check_capacity(const MemoryTraits& traits, std::uint64_t bytes) {
-  if (traits.capacity_bytes == 0 || bytes <= traits.capacity_bytes) return {};
-  return {StatusCode::resource_limit, "the scene needs " + std::to_string(bytes) +
-                                          " bytes of memory, and " + traits.name + " has " +
-                                          std::to_string(traits.capacity_bytes) +
-                                          ". Ask for a smaller depth or choose a larger memory."};
 }
 
 }  // namespace fasttree::model

@@ -4,7 +4,6 @@
 
 #include <memory>
 
-#include "fasttree/status.h"
 #include "model/memory/memory.h"
 #include "model/memory/memory_config.h"
 
@@ -12,8 +11,5 @@ namespace fasttree::model {
 
 /// `config` has passed validate().
 std::unique_ptr<Memory> make_memory(const MemoryConfig& config);
-
-/// resource_limit where `bytes` from address 0 on are more than the memory holds.
-Status check_capacity(const MemoryTraits& traits, std::uint64_t bytes);
 
 }  // namespace fasttree::model

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "model/memory/byte_store.h"
+#include "model/memory/capacity.h"
 #include "model/memory/make_memory.h"
 #include "model/system/global_control.h"
 #include "model/system/host_interface.h"

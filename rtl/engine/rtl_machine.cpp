@@ -8,6 +8,7 @@
 
 #include "grid/grid.h"
 #include "model/memory/byte_store.h"
+#include "model/memory/capacity.h"
 #include "model/memory/make_memory.h"
 #include "model/system/host_interface.h"
 #include "model/system/memory_map.h"
