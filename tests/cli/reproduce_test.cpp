@@ -42,7 +42,7 @@ TEST(CliReproduce, TableTwoOfASubstituteUnderItsOwnName) {
 }
 
 TEST(CliReproduce, TableTwoOfTheBunny) {
-  const std::string bunny = shared_scene("bunny.ply");
+  const std::string bunny = real_scene("bunny.ply");
   if (bunny.empty()) GTEST_SKIP() << "bunny.ply is not here";
   const Folder folder;
   const std::vector<std::string> arguments = {"reproduce", "table2", "--scene",

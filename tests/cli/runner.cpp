@@ -137,7 +137,7 @@ void write_file(const std::string& path, const std::string& content) {
   std::ofstream(path, std::ios::binary) << content;
 }
 
-std::string shared_scene(const std::string& name) {
+std::string real_scene(const std::string& name) {
   const std::string path = std::string(FASTTREE_SCENES) + "/" + name;
   return std::filesystem::exists(path) ? path : "";
 }

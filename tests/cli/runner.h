@@ -49,6 +49,6 @@ std::string read_file(const std::string& path);
 void write_file(const std::string& path, const std::string& content);
 
 /// A scene file that need not be there, or empty.
-std::string shared_scene(const std::string& name);
+std::string real_scene(const std::string& name);
 
 }  // namespace fasttree::cli

@@ -14,7 +14,7 @@ class Scene : public testing::TestWithParam<std::tuple<const char*, const char*>
 
 TEST_P(Scene, HasARightTree) {
   const auto [name, axes] = GetParam();
-  const std::string path = shared_scene(name);
+  const std::string path = real_scene(name);
   if (path.empty()) GTEST_SKIP() << name << " is not on this machine";
   // Brute force for all rays, and about as long for a large scene as for a small one.
   const bool large = std::string(name).rfind("dragon", 0) == 0;
