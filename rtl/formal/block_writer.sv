@@ -5,7 +5,7 @@
 // sources: common/ft_block_writer.sv
 // fault: common/ft_block_writer.sv: !last || wr_ready => 1'b1
 // fault: common/ft_block_writer.sv: first <= first + 32'(wr_bytes) => first <= first + 32'(BLOCK)
-// fault: common/ft_block_writer.sv: last      = &place => last      = held == (ItemBits + 1)'(Items - 1)
+// fault: common/ft_block_writer.sv: last  <= &next_place => last  <= held == (ItemBits + 1)'(Items - 2)
 // fault: common/ft_block_writer.sv: flush ? 32'd0 : 32'd1 => 32'd1
 module proof (
     input logic        clk,
