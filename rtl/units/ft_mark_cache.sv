@@ -111,7 +111,9 @@ module ft_mark_cache #(
   end
 
   // Tags and data. Word b of way w lies in bank w ^ b, so that a look-up reads this word of all ways
-  // with 16 banks of one word, and still both words of one way can be read or written at once.
+  // with 16 banks of one word, and still both words of one way can be read or written at once. Each
+  // word has its block's tag beside it, in the half of a block RAM that would lie idle: a bank's
+  // comparison picks its word, without a choice between two ways.
   logic aside, read_odd, way_odd, fill;
   logic [SetBits-1:0] read_set, write_set;
   logic read_word_even, read_word_odd, write_word_even, write_word_odd;
@@ -121,8 +123,7 @@ module ft_mark_cache #(
   logic [32*WAYS-1:0] bank_row;
   logic [WAYS-1:0] bank_write, oldest;
 
-  assign aside = state == Miss || state == Issue || state == FlushPick || state == FlushRead ||
-                 state == FlushWrite;
+  assign aside = state == Miss || state == Issue || state == FlushRead || state == FlushWrite;
   assign way_odd         = (way & OddWays) != '0;
   assign read_odd        = missed ? (oldest & OddWays) != '0 : way_odd;
   assign read_set        = aside ? held_set : next_addr[3+:SetBits];
@@ -135,19 +136,20 @@ module ft_mark_cache #(
   assign write_data_odd  = fill ? (way_odd ? filled_block[31:0] : filled_block[63:32]) : head_word;
 
   for (genvar w = 0; w < WAYS; w = w + 1) begin : gen_way
-    logic [TagBits-1:0] tags[0:Sets-1];
+    logic [SetBits:0] from, to;
+    assign from = {read_set, w % 2 == 0 ? read_word_even : read_word_odd};
+    assign to   = {write_set, w % 2 == 0 ? write_word_even : write_word_odd};
+
+    logic [TagBits-1:0] tags[0:2*Sets-1];
     logic [TagBits-1:0] tag;
     always_ff @(posedge clk) begin
-      if (fill && way[w]) tags[held_set] <= held_addr[31-:TagBits];
-      tag <= tags[read_set];
+      if (fill && (way[w] || way[w^1])) tags[to] <= held_addr[31-:TagBits];
+      tag <= tags[from];
     end
     assign tag_row[TagBits*w+:TagBits] = tag;
 
     logic [31:0] words[0:2*Sets-1];
     logic [31:0] word;
-    logic [SetBits:0] from, to;
-    assign from = {read_set, w % 2 == 0 ? read_word_even : read_word_odd};
-    assign to   = {write_set, w % 2 == 0 ? write_word_even : write_word_odd};
     always_ff @(posedge clk) begin
       if (bank_write[w]) words[to] <= w % 2 == 0 ? write_data_even : write_data_odd;
       word <= words[from];
@@ -187,28 +189,31 @@ module ft_mark_cache #(
     end
   end
 
-  // The look-up. What was written in the cycle before has not been read: the rows were read then.
+  // The look-up. What was written in the cycle before has not been read: the rows were read then. A
+  // word written by a hit is found by its tag, but is not what was read; a block filled is not found.
   logic wrote, filled;  // in the cycle before: a word, by a hit; a block
   logic [63:0] last_block;
-  logic same_set, forward, hit;
-  logic [WAYS-1:0] live, hits, victims, picks, stores;
+  logic same_set, same_block, written_word, filled_again, hit;
+  logic [WAYS-1:0] live, finds, hits, victims, picks, stores;  // finds: by bank
   logic [31:0] even_word, odd_word, other_word, late_word, found_word;
   logic [TagBits-1:0] victim_tag;
 
-  assign same_set = head_set == held_set;
-  assign forward  = head_addr[31:3] == held_addr[31:3] &&
-                    (filled || (wrote && head_addr[2] == held_addr[2]));
+  assign same_set     = head_set == held_set;
+  assign same_block   = head_addr[31:3] == held_addr[31:3];
+  assign written_word = same_block && wrote && head_addr[2] == held_addr[2];
+  assign filled_again = same_block && filled;
   assign live = head_valid & ~(way & {WAYS{filled && same_set}}) & {WAYS{state == Ready}};
-  assign hit = forward || hits != '0;
+  assign hit  = filled_again || finds != '0;
 
   for (genvar w = 0; w < WAYS; w = w + 1) begin : gen_hit
-    assign hits[w]  = live[w] && tag_row[TagBits*w+:TagBits] == head_tag;
-    // Selected by the late `hits` with as little as possible behind them.
+    assign finds[w] = live[head_addr[2]?w^1 : w] && tag_row[TagBits*w+:TagBits] == head_tag;
+    assign hits[w]  = finds[head_addr[2]?w^1 : w];
+    // Selected by the late `finds` with as little as possible behind them.
     assign victims[w] = (state == Issue || state == FlushWrite) && (way[w] || way[w^1]);
-    assign picks[w]   = victims[w] || (!forward && hits[head_addr[2] ? w ^ 1 : w]);
+    assign picks[w]   = victims[w] || (!written_word && finds[w]);
     assign stores[w]  = fill ? way[w] || way[w^1]
-                             : look && head_write && forward && way[head_addr[2] ? w ^ 1 : w];
-    assign bank_write[w] = stores[w] || (look && head_write && picks[w]);
+                             : look && head_write && filled_again && way[head_addr[2] ? w ^ 1 : w];
+    assign bank_write[w] = stores[w] || (look && head_write && finds[w]);
   end
 
   always_comb begin
@@ -223,8 +228,8 @@ module ft_mark_cache #(
       victim_tag |= tag_row[TagBits*w+:TagBits] & {TagBits{way[w]}};
     end
     case (state)
-      Ready:   other_word = !forward ? '0 :
-                            !filled ? held_word :
+      Ready:   other_word = written_word ? held_word :
+                            !filled_again ? '0 :
                             head_addr[2] ? last_block[63:32] : last_block[31:0];
       Answer:  other_word = late_word;
       default: other_word = held_addr[2] ? rdd_data[63:32] : rdd_data[31:0];
@@ -280,7 +285,7 @@ module ft_mark_cache #(
       left       <= WaitBits'(MISS_PENALTY - 2);
       asked      <= 1'b0;
     end
-    if (look && !forward) way <= hits;
+    if (look && !filled_again) way <= hits;
     if (missed) begin
       way        <= oldest;
       must_write <= (dirty & oldest) != '0;
@@ -363,7 +368,7 @@ module ft_mark_cache #(
 `ifndef SYNTHESIS
   always_ff @(posedge clk) begin
     if (!rst) begin
-      assert ((hits & (hits - 1'b1)) == '0) else $error("ft_mark_cache: a block in two ways");
+      assert (!look || (hits & (hits - 1'b1)) == '0) else $error("ft_mark_cache: a block in two ways");
       assert (!((clear || flush) && !done)) else $error("ft_mark_cache: cleared at work");
       assert (!req_valid || req_addr[1:0] == 2'b00) else $error("ft_mark_cache: part of a word");
       assert (!missed || (oldest != '0 && (oldest & (oldest - 1'b1)) == '0))

@@ -82,7 +82,7 @@ module ft_morton_code #(
   assign feed_scale  = {32'd0, grid.scale};
   assign feed_bits   = {4'd0, grid.bits};
 
-  logic cell_valid;
+  logic cell_valid, cell_below, cell_above;
   logic [14:0] cell_place;
   ft_quantiser quantiser (
       .clk      (clk),
@@ -93,10 +93,13 @@ module ft_morton_code #(
       .in_scale (feed_scale[32*feed_axis+:32]),
       .in_bits  (feed_bits[4*feed_axis+:4]),
       .out_valid(cell_valid),
-      .out_cell (cell_place)
+      .out_below(cell_below),
+      .out_above(cell_above),
+      .out_place(cell_place)
   );
 
-  // A bit of a code takes its place of the coordinate, where it is of that axis.
+  // A bit of a code takes its place of the coordinate, where it is of that axis. The bits of an axis
+  // are as many as its cells have: all ones are the last cell.
   logic [3*CodeBits-1:0] mask;
   logic [4*CodeBits-1:0] rank;
   logic [CodeBits-1:0] spread;
@@ -107,7 +110,7 @@ module ft_morton_code #(
   for (genvar i = 0; i < CodeBits; i++) begin : g_bit
     logic [3:0] axes;
     assign axes      = {1'b0, mask[2*CodeBits+i], mask[CodeBits+i], mask[i]};
-    assign spread[i] = places[rank[4*i+:4]] && axes[come_axis];
+    assign spread[i] = (places[rank[4*i+:4]] || cell_above) && !cell_below && axes[come_axis];
   end
 
   // The cell's code, with the box's corners: each axis' part counts by itself.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // From a coordinate to its cell on an axis: clamp(truncate((value - lo) * scale), 0, 2^15-1), each
 // operation rounded to binary32, and of that the upper `bits` bits. One a cycle,
-// ft_pkg::QuantiserLatency cycles later; out_cell has some levels of logic behind the last register.
+// ft_pkg::QuantiserLatency cycles later, with some levels of logic behind the last register. The
+// clamp is left to who uses the place: it is found beside it, and whoever picks bits of the place
+// can clamp what was picked instead of waiting for it.
 module ft_quantiser (
     input  logic        clk,
     input  logic        rst,
@@ -11,7 +13,9 @@ module ft_quantiser (
     input  logic [31:0] in_scale,  // zero, or normal and positive
     input  logic [3:0]  in_bits,
     output logic        out_valid,
-    output logic [14:0] out_cell
+    output logic        out_below,  // the cell is 0, whatever out_place says
+    output logic        out_above,  // if not below, it is the last, all ones
+    output logic [14:0] out_place   // else this
 );
   localparam int Latency = ft_pkg::QuantiserLatency;
   localparam int SubLatency = ft_pkg::FloatSubLatency;
@@ -50,18 +54,12 @@ module ft_quantiser (
   );
 
   // The integer part, at most 2^bits - 1.
-  logic outside, none;
   logic [7:0] limit;  // the exponent of 2^bits
-  logic [14:0] most, places;
-  always_ff @(posedge clk) begin
-    limit <= 8'd127 + 8'(bits[Latency-2]);
-    for (int i = 0; i < 15; i++) most[i] <= 4'(i) < bits[Latency-2];
-  end
-  assign none     = x[22] || x[21:14] < 8'd127;
-  assign outside  = x[21:14] >= limit;
+  always_ff @(posedge clk) limit <= 8'd127 + 8'(bits[Latency-2]);
+  assign out_below = x[22] || x[21:14] < 8'd127;
+  assign out_above = x[21:14] >= limit;
   // 141 - exponent, of which only the low bits matter.
-  assign places   = {1'b1, x[13:0]} >> (4'd13 - x[17:14]);
-  assign out_cell = none ? '0 : outside ? most : places;
+  assign out_place = {1'b1, x[13:0]} >> (4'd13 - x[17:14]);
 
 `ifndef SYNTHESIS
   always_ff @(posedge clk) begin

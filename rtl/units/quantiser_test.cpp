@@ -36,7 +36,7 @@ class Stream {
     const std::uint32_t cell = quantiser(value);
     inside_ += cell > 0 && cell < kFinestCells - 1;
     ++values_;
-    expected_.push_back({cycles_, cell >> (kMaxAxisBits - bits), value});
+    expected_.push_back({cycles_, cell >> (kMaxAxisBits - bits), (1u << bits) - 1, value});
     cycle(true);
   }
   void drain() {
@@ -52,7 +52,7 @@ class Stream {
  private:
   struct Expected {
     std::uint64_t cycle;
-    std::uint32_t cell;
+    std::uint32_t cell, last;
     float value;
   };
   void cycle(bool valid) {
@@ -62,9 +62,12 @@ class Stream {
     const bool due = !expected_.empty() && expected_.front().cycle + kLatency == cycles_;
     if (due != static_cast<bool>(bench_.unit.out_valid)) ++wrong_;
     if (!due) return;
-    if (bench_.unit.out_cell != expected_.front().cell && ++wrong_ < 5) {
-      ADD_FAILURE() << expected_.front().value << " is in cell " << expected_.front().cell
-                    << ", not " << bench_.unit.out_cell;
+    const Expected& expected = expected_.front();
+    const std::uint32_t cell = bench_.unit.out_below   ? 0
+                               : bench_.unit.out_above ? expected.last
+                                                       : bench_.unit.out_place;
+    if (cell != expected.cell && ++wrong_ < 5) {
+      ADD_FAILURE() << expected.value << " is in cell " << expected.cell << ", not " << cell;
     }
     expected_.pop_front();
   }
