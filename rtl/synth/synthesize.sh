@@ -45,14 +45,32 @@ configure_and_build build fasttree_netlist -DCMAKE_BUILD_TYPE=Release >"$work/bu
   { cat "$work/build.log" && exit 1; }
 netlist=$PWD/build/rtl/synth/fasttree_netlist
 
-sources=$(grep -E '\.sv$' rtl/fasttree.f | sed 's|^|rtl/|' | tr '\n' ' ')
+# sources MODULE: the files of it and of what it instances, in fasttree.f's order. No others: what Yosys
+# makes of a unit depends on all it has read, and a unit's figures should change with the unit alone.
+sources() {
+  local needed=" ft_pkg " queue=("$1") module file
+  while [ ${#queue[@]} -gt 0 ]; do
+    module=${queue[0]}
+    queue=("${queue[@]:1}")
+    [[ $needed != *" $module "* ]] || continue
+    file=$(grep -E "(^|/)$module\.sv$" rtl/fasttree.f) || continue
+    needed+="$module "
+    mapfile -t -O "${#queue[@]}" queue < <(sed 's|//.*||' "rtl/$file" | grep -oE '\bft_[a-z_]+' | sort -u)
+  done
+  while read -r file; do
+    module=$(basename "$file" .sv)
+    if [[ $needed == *" $module "* ]]; then printf 'rtl/%s ' "$file"; fi
+  done < <(grep -E '\.sv$' rtl/fasttree.f)
+}
 printf 'set_driving_cell INVX1\nset_load 0.02 [all_outputs]\n' >"$work/constraints"
 
 # synthesize UNIT: writes $work/UNIT.report.
 synthesize() {
-  local unit=$1 entry module parameters still begin=$SECONDS
+  local unit=$1 entry module parameters sources options still begin=$SECONDS
   entry=$(jq -c --arg u "$unit" '.[] | select(.unit == $u)' "$list")
   module=$(jq -r .module <<<"$entry")
+  sources=$(sources "$module")
+  options=$(jq -r '.options // ""' <<<"$entry")
   parameters=$(jq -r '.parameters | to_entries[] | "-chparam \(.key) \(.value)"' <<<"$entry" | tr '\n' ' ')
   mapfile -t still < <(jq -r '.still // [] | .[]' <<<"$entry")
   # The unit is renamed, since Yosys names a module with parameters after a hash of them.
@@ -60,7 +78,7 @@ synthesize() {
 read_verilog -sv $sources
 hierarchy -check -top $module $parameters
 rename -top unit
-synth_xilinx -family xc7 -flatten -noiopad -noclkbuf -top unit
+synth_xilinx -family xc7 -flatten -noiopad -noclkbuf $options -top unit
 delete =*/A:blackbox=1 =*/A:whitebox=1
 write_json $work/$unit.xc7.json
 YOSYS
