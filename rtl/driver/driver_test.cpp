@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
+#include <fstream>
+#include <iterator>
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -216,6 +218,21 @@ TEST(DriverExample, HandsErrorsOn) {
   EXPECT_EQ(ft_board_build(&small, corners.data(), 10, 9, &order, &result), -1);
   registers.words[FT_ACCEL_ID] = 0;
   EXPECT_EQ(ft_board_build(&board, corners.data(), 10, 9, &order, &result), -1);
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(std::string(FASTTREE_SOURCES) + "/" + path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(DriverExample, IsTheOneOfTheDocumentation) {
+  const std::string page = text_of("docs/accelerator/integration.md");
+  const std::string mark = "```c\n";
+  const std::size_t begin = page.find(mark) + mark.size();
+  ASSERT_GT(begin, mark.size());
+  const std::string shown = page.substr(begin, page.find("```", begin) - begin);
+  EXPECT_NE(shown.find("ft_board_build"), std::string::npos);
+  EXPECT_NE(text_of("rtl/driver/example.c").find(shown), std::string::npos) << shown;
 }
 
 }  // namespace
