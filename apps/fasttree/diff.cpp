@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // fasttree diff: where do the reference builder, the model and the RTL first differ, word by word?
-#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "command.h"
 #include "inputs.h"
 #include "model/config/machine_config.h"
+#include "model/report/array_comparison.h"
 #include "model/report/simulate.h"
 #include "model/report/stage_arrays.h"
 #include "options.h"
@@ -19,14 +18,10 @@
 namespace fasttree::app {
 namespace {
 
+using model::ArrayComparison;
+using model::Party;
 using model::StageArray;
 using nlohmann::ordered_json;
-
-/// One of those that are compared.
-struct Party {
-  std::string name;
-  std::vector<StageArray> arrays;
-};
 
 class DiffCommand : public Command {
  public:
@@ -106,22 +101,12 @@ class DiffCommand : public Command {
     json["arrays"] = ordered_json::array();
     Table table({"stage", "array", "words", "result"});
     std::string first;
-    for (std::size_t i = 0; i < parties[0].arrays.size(); ++i) {
-      const StageArray& expected = parties[0].arrays[i];
-      if (!stage_.empty() && expected.stage != stage_) continue;
-      const std::optional<std::size_t> at = first_difference(parties, i);
+    for (const ArrayComparison& array : compare_arrays(parties, stage_)) {
+      const auto at = array.first_word;
       const std::string result = at ? "differs at word " + std::to_string(*at) : "same";
-      table.row({expected.stage, expected.name, std::to_string(expected.words.size()), result});
-      ordered_json entry{{"stage", expected.stage},
-                         {"array", expected.name},
-                         {"words", expected.words.size()},
-                         {"same", !at.has_value()}};
-      if (at) {
-        entry["first_word"] = *at;
-        for (const Party& party : parties) entry[party.name] = word(party, i, *at);
-        if (first.empty()) first = describe(parties, i, *at);
-      }
-      json["arrays"].push_back(entry);
+      table.row({array.stage, array.name, std::to_string(array.words), result});
+      json["arrays"].push_back(record(array, parties));
+      if (first.empty()) first = describe(array, parties);
     }
     context.output.line("scene                {}", scene);
     context.output.line("machine              {}", config.name);
@@ -132,40 +117,18 @@ class DiffCommand : public Command {
     return first.empty() ? kDone : kCheckFailed;
   }
 
-  // The least index at which not all have the same word.
-  static std::optional<std::size_t> first_difference(const std::vector<Party>& parties,
-                                                     std::size_t array) {
-    const auto& expected = parties[0].arrays[array].words;
-    std::optional<std::size_t> least;
-    for (const Party& party : parties) {
-      const auto& words = party.arrays[array].words;
-      if (words == expected) continue;
-      const std::size_t both = std::min(words.size(), expected.size());
-      std::size_t i = 0;
-      while (i < both && words[i] == expected[i]) ++i;
-      least = std::min(least.value_or(i), i);
+  static ordered_json record(const ArrayComparison& array, const std::vector<Party>& parties) {
+    ordered_json record{{"stage", array.stage},
+                        {"array", array.name},
+                        {"words", array.words},
+                        {"same", !array.first_word}};
+    if (array.first_word) record["first_word"] = *array.first_word;
+    for (std::size_t p = 0; p < array.values.size(); ++p) {
+      const auto value = array.values[p];
+      record[parties[p].name] =
+          value ? ordered_json(model::word_text(*value)) : ordered_json(nullptr);
     }
-    return least;
-  }
-
-  // Null where the party has fewer words.
-  static ordered_json word(const Party& party, std::size_t array, std::size_t at) {
-    const auto& words = party.arrays[array].words;
-    if (at >= words.size()) return nullptr;
-    return fmt::format("{:#010x}", words[at]);
-  }
-
-  static std::string describe(const std::vector<Party>& parties, std::size_t array,
-                              std::size_t at) {
-    const StageArray& expected = parties[0].arrays[array];
-    std::string text = fmt::format("{} {}[{}]:", expected.stage, expected.name, at);
-    for (const Party& party : parties) {
-      const ordered_json value = word(party, array, at);
-      text += fmt::format(" {} {}", party.name,
-                          value.is_null() ? std::string("ends") : value.get<std::string>());
-      text += &party == &parties.back() ? "" : ",";
-    }
-    return text;
+    return record;
   }
 
   std::string scene_;

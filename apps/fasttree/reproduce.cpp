@@ -99,7 +99,14 @@ class ReproduceCommand : public Command {
   }
 
   int run(Context& context) override {
-    if (table_ == "table1") return reproduce_table1(context, csv_);
+    if (table_ == "table1") {
+      if (!folder_.empty() || !scenes_.empty() || within_) {
+        throw Failure{kUsage,
+                      "table1 is of the RTL, without scenes or a time: --scenes, --scene "
+                      "and --within are for table2 and table3"};
+      }
+      return reproduce_table1(context, csv_);
+    }
     if (table_ != "table2" && table_ != "table3") {
       const std::string near = nearest(table_, {"table1", "table2", "table3"});
       throw Failure{kUsage,

@@ -52,7 +52,8 @@ class SimulateCommand : public Command {
            "  fasttree simulate bunny.ply --config paper-asic65 --verify --html bunny.html\n"
            "  fasttree simulate bunny.ply --config paper-asic65 --set "
            "paper.bus_bytes_per_cycle=32\n"
-           "  fasttree simulate bunny.ply --config paper-fpga --engine rtl --wave 1000:3000\n"
+           "  fasttree simulate bunny.ply --config paper-fpga --engine rtl --wave 1000:3000 "
+           "\\\n    --wave-file bunny.fst\n"
            "  fasttree simulate --config fasttree-2 --print-config";
   }
 
@@ -63,7 +64,8 @@ class SimulateCommand : public Command {
     options.choice(rtl_, "--engine", "What runs: the cycle-level model, or the RTL",
                    Choices<bool>{{"model", false}, {"rtl", true}});
     options.text(wave_, "--wave", "FROM:TO", "Write waveforms of these cycles (engine rtl)");
-    options.text(wave_file_, "--wave-file", "FILE", "Where to: FST, which GTKWave opens");
+    options.text(wave_file_, "--wave-file", "FILE",
+                 "Where to: FST, which GTKWave opens (fasttree.fst)");
     options.flag(list_, "--list-configs", "Name the configurations, and stop");
     options.flag(print_, "--print-config",
                  "Print the configuration as TOML, with what each key means, and stop");
@@ -104,7 +106,9 @@ class SimulateCommand : public Command {
       check(save_tree(report.result.tree, out_));
       context.output.line("saved                {}", out_);
     }
-    if (!wave_.empty()) context.output.line("waveforms            {}", wave_file_);
+    if (!rtl_options.wave_file.empty()) {
+      context.output.line("waveforms            {}", rtl_options.wave_file);
+    }
     write(context.output, csv_, model::report_csv, report);
     write(context.output, timeline_, model::timeline_json, report);
     write(context.output, html_, model::html_report, report);
@@ -122,7 +126,10 @@ class SimulateCommand : public Command {
   // "FROM:TO", cycles of the build; either may be left out.
   rtl::RtlOptions waves() const {
     rtl::RtlOptions options;
-    if (wave_.empty()) return options;
+    if (wave_.empty()) {
+      if (wave_file_.empty()) return options;
+      throw Failure{kUsage, "--wave-file needs to know of which cycles: --wave FROM:TO"};
+    }
     if (!rtl_) throw Failure{kUsage, "--wave is for --engine rtl: the model has no waveforms"};
     const std::size_t colon = wave_.find(':');
     const auto read = [&](const std::string& text, std::uint64_t& value) {
@@ -134,7 +141,7 @@ class SimulateCommand : public Command {
     read(wave_.substr(0, colon), options.wave_from);
     read(wave_.substr(colon + 1), options.wave_to);
     if (options.wave_from >= options.wave_to) wrong_wave();
-    options.wave_file = wave_file_;
+    options.wave_file = wave_file_.empty() ? "fasttree.fst" : wave_file_;
     return options;
   }
   [[noreturn]] void wrong_wave() const {
@@ -157,6 +164,11 @@ class SimulateCommand : public Command {
                               : model::simulate(mesh, report.config, options));
     report.wall_s = milliseconds_since(start) / 1000;
     stop_if_cancelled();
+    if (!wave_.empty() && rtl_options.wave_from >= report.result.cycles) {
+      throw Failure{kUsage, fmt::format("--wave {} begins after the build's {} cycles: there are "
+                                        "no waveforms of it",
+                                        wave_, report.result.cycles)};
+    }
   }
 
   static void write(Output& output, const std::string& path,
@@ -199,7 +211,7 @@ class SimulateCommand : public Command {
   std::vector<std::string> set_;
   bool rtl_ = false;
   std::string wave_;
-  std::string wave_file_ = "fasttree.fst";
+  std::string wave_file_;
   bool list_ = false;
   bool print_ = false;
   bool verify_ = false;

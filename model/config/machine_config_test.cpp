@@ -85,6 +85,13 @@ TEST(MachineConfig, PresetComesBeforeTheOtherKeysWhereverItStands) {
   EXPECT_EQ(config.value().name, "test");
 }
 
+TEST(MachineConfig, TheMemoryThatIsNotGivenIsThePresetThatItNames) {
+  const MachineConfig config = parse_config("clock_mhz = 100\n", "test").value();
+  MachineConfig named = config;
+  ASSERT_TRUE(apply_override(named, "memory.preset=" + config.memory.preset).ok());
+  EXPECT_EQ(to_toml(named), to_toml(config));
+}
+
 TEST(MachineConfig, Overrides) {
   MachineConfig config = load_config("paper-asic65").value();
   ASSERT_TRUE(apply_override(config, "clock_mhz=720").ok());

@@ -71,7 +71,7 @@ struct ControllerConfig {
 };
 
 struct MemoryConfig {
-  std::string preset = "lpddr3-1600-dual";
+  std::string preset = "lpddr3-1600";
   MemoryKind kind = MemoryKind::dram;
   // ideal and fixed
   std::uint32_t access_bytes = 32;

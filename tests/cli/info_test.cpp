@@ -60,7 +60,8 @@ TEST(CliInfo, DescribesTheProgram) {
 }
 
 TEST(CliInfo, HelpHasAnExampleEverywhere) {
-  for (const char* command : {"info", "build", "verify", "render", "compare"}) {
+  for (const char* command : {"info", "build", "verify", "render", "compare", "animate", "view",
+                              "memory", "simulate", "diff", "explore", "reproduce"}) {
     const RunResult result = run({command, "--help"});
     EXPECT_EQ(result.exit_code, 0) << command;
     EXPECT_NE(result.out.find(std::string("Example:\n  fasttree ") + command), std::string::npos)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -16,6 +17,51 @@ namespace {
 using nlohmann::json;
 
 const char* const kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+TEST(CliReproduce, TableOneIsOfTheSynthesisReports) {
+  const Folder folder;
+  const RunResult text = run({"reproduce", "table1", "--csv", folder.path("t.csv")});
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  const json all = run_json({"reproduce", "table1"});
+  EXPECT_EQ(all["table"], "table1");
+  const std::vector<std::string> modules = {"SBCU", "PSU", "MCGU",  "RSU",  "LNGU", "INGU",
+                                            "BEU",  "PCU", "Cache", "rest", "all"};
+  ASSERT_EQ(all["rows"].size(), modules.size());
+  json sum = json::object();
+  for (std::size_t i = 0; i < modules.size(); ++i) {
+    const json& row = all["rows"][i];
+    EXPECT_EQ(row["module"], modules[i]);
+    EXPECT_GT(row["lut"], 0) << row;
+    EXPECT_GT(row["registers"], 0) << row;
+    EXPECT_EQ(row["at_paper_clock"], row["fmax_mhz"] >= 163.0) << row;
+    EXPECT_NE(text.out.find(modules[i]), std::string::npos);
+    const auto far = [&](const char* ours, const char* paper) {
+      return std::abs(row[ours].get<double>() / row[paper].get<double>() - 1) > 0.25;
+    };
+    if (far("lut", "paper_lut") || far("registers", "paper_registers")) {
+      const std::string reason = row["reason"];
+      if (modules[i] != "all") EXPECT_NE(reason, "") << row;
+      EXPECT_NE(text.out.find(reason), std::string::npos);
+    }
+    if (modules[i] == "all") continue;
+    for (const char* key : {"lut", "registers", "bram_kbits", "dsp", "gate_equivalents"}) {
+      sum[key] = sum.value(key, 0.0) + row[key].get<double>();
+    }
+  }
+  // Rows of the paper, and ours: the last one has all the others.
+  EXPECT_EQ(all["rows"][0]["paper_lut"], 2485);
+  EXPECT_EQ(all["rows"][8]["paper_bram_kbits"], 172);
+  const json& whole = all["rows"].back();
+  EXPECT_EQ(whole["paper_lut"], 173391);
+  for (const auto& [key, value] : sum.items()) {
+    EXPECT_NEAR(whole[key].get<double>(), value.get<double>(), 1e-6 * value.get<double>()) << key;
+  }
+  EXPECT_EQ(all["within_paper"],
+            whole["lut"] <= whole["paper_lut"] && whole["registers"] <= whole["paper_registers"]);
+  const std::string csv = read_file(folder.path("t.csv"));
+  EXPECT_EQ(csv.rfind("module,", 0), 0u);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 12);
+}
 
 TEST(CliReproduce, TableTwoOfASubstituteUnderItsOwnName) {
   const Folder folder;
@@ -100,6 +146,8 @@ TEST(CliReproduce, WrongUsageIsAnsweredWithTheRightOne) {
   const std::vector<Case> cases = {
       {{"reproduce"}, 2, "TABLE"},
       {{"reproduce", "table4", "--scene", "scene:knot:100"}, 2, "table2"},
+      {{"reproduce", "table1", "--scene", "scene:knot:100"}, 2, "table2"},
+      {{"reproduce", "table1", "--within", "5"}, 2, "table2"},
       {{"reproduce", "table2"}, 2, "--scenes"},
       {{"reproduce", "table2", "--scenes", folder.path("nothing")}, 3, "nothing"},
       {{"reproduce", "table2", "--scenes", folder.path("")}, 3, "no meshes"}};

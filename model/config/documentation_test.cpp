@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// docs/configurations.md lists every key of a configuration as it is: what it is by default, what
+// is allowed, what it means.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <sstream>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "model/config/sections.h"
+
+namespace fasttree::model {
+namespace {
+
+std::string text_of(const FieldValue& value) {
+  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const auto* text = std::get_if<std::string>(&value)) return text->empty() ? "-" : *text;
+  std::ostringstream number;
+  if (const auto* count = std::get_if<std::uint64_t>(&value)) number << *count;
+  if (const double* real = std::get_if<double>(&value)) number << *real;
+  return number.str();
+}
+
+/// A key's row in the page's table of its section.
+std::string row_of(const Section& section, const Field& field) {
+  MachineConfig config;
+  return "| `" + field.key + "` | " + text_of(field.get(section.of(config))) + " | " +
+         allowed(field) + " | " + field.comment + " |";
+}
+
+/// Rows of keys below the heading of a section, up to the next heading.
+std::vector<std::string> rows_of(const std::string& section) {
+  std::ifstream page(FASTTREE_CONFIGURATIONS_PAGE);
+  std::vector<std::string> rows;
+  const std::string heading =
+      section.empty() ? "### Before the sections" : "### `[" + section + "]`";
+  bool inside = false;
+  for (std::string line; std::getline(page, line);) {
+    if (line.rfind("#", 0) == 0) inside = line == heading;
+    if (inside && line.rfind("| `", 0) == 0) rows.push_back(line);
+  }
+  return rows;
+}
+
+TEST(ConfigurationsPage, HasEveryKeyOfEverySectionAndNoOther) {
+  for (const Section& section : config_sections()) {
+    std::vector<std::string> expected;
+    std::string table;
+    for (const Field& field : section.fields) {
+      expected.push_back(row_of(section, field));
+      table += expected.back() + "\n";
+    }
+    EXPECT_EQ(rows_of(section.name), expected)
+        << "The table of [" << section.name << "] has to be:\n"
+        << table;
+  }
+}
+
+}  // namespace
+}  // namespace fasttree::model
