@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -41,8 +42,8 @@ struct Machine {
               static_cast<Machine*>(m)->store.read(model::Address(address), to, bytes);
             },
             [](void* m) {
-              Board& board = *static_cast<Machine*>(m)->board;
-              for (int i = 0; i < 1000000 && !board.irq(); ++i) board.step();
+              Board& now = *static_cast<Machine*>(m)->board;
+              for (int i = 0; i < 1000000 && !now.irq(); ++i) now.step();
             }};
   }
 
@@ -81,7 +82,7 @@ TEST(RtlDriverExample, LeavesTheLibrarysTree) {
     const fasttree::test::OwnedMesh mesh = fasttree::test::soup(200, 9, size);
     ft_accel_order order;
     ft_accel_result result;
-    ASSERT_EQ(ft_board_build(&board, &mesh.positions[0][0], 200, 12, &order, &result), 0);
+    ASSERT_EQ(ft_board_build(&board, &mesh.positions[0].x, 200, 12, &order, &result), 0);
     EXPECT_LE(result.references, 1200u);
     BuildSettings settings;
     settings.profile = Profile::paper;
@@ -99,7 +100,7 @@ TEST(RtlDriverExample, HandsOnWhatTheAcceleratorRefuses) {
   mesh.positions[61][1] = std::numeric_limits<float>::infinity();
   ft_accel_order order;
   ft_accel_result result;
-  EXPECT_EQ(ft_board_build(&board, &mesh.positions[0][0], 50, 6, &order, &result),
+  EXPECT_EQ(ft_board_build(&board, &mesh.positions[0].x, 50, 6, &order, &result),
             FT_ACCEL_NOT_FINITE);
   EXPECT_EQ(result.error_detail, 3u * 61 + 1);
 }
