@@ -20,7 +20,6 @@ namespace {
 
 using model::ArrayComparison;
 using model::Party;
-using model::StageArray;
 using nlohmann::ordered_json;
 
 class DiffCommand : public Command {
@@ -32,7 +31,9 @@ class DiffCommand : public Command {
   const char* details() const override {
     return "Builds the scene with the reference builder, on the cycle-level model and on the RTL,\n"
            "and compares what each stage left in memory, in the order of the stages: the first\n"
-           "word that differs is where to look for the fault. Exit 1 where one is found.\n\n"
+           "word that differs is where to look for the fault. Exit 1 where one is found. The "
+           "cycles\n"
+           "that model and RTL took stand below.\n\n"
            "Example:\n"
            "  fasttree diff bunny.ply\n"
            "  fasttree diff scene:knot?triangles=2000 --stage radix_sort --config paper-asic65";
@@ -62,10 +63,16 @@ class DiffCommand : public Command {
     parties.push_back(
         {"reference", take(reference_stage_arrays(scene.view, config,
                                                   context.progress.callback("reference:")))});
-    if (rtl_ != kRtl) parties.push_back({"model", simulated(context, scene.view, config, false)});
-    if (rtl_ != kModel) parties.push_back({"rtl", simulated(context, scene.view, config, true)});
+    std::vector<Cycles> cycles;
+    for (const bool rtl : {false, true}) {
+      if (rtl_ == (rtl ? kModel : kRtl)) continue;
+      const model::SimulationResult result = simulated(context, scene.view, config, rtl);
+      const char* name = rtl ? "rtl" : "model";
+      parties.push_back({name, stage_arrays(result)});
+      cycles.push_back({name, result.cycles, result.stages});
+    }
     context.progress.clear();
-    return compare(context, scene.mesh.name, config, parties);
+    return compare(context, scene.mesh.name, config, parties, cycles);
   }
 
  private:
@@ -80,23 +87,31 @@ class DiffCommand : public Command {
     return list;
   }
 
-  static std::vector<StageArray> simulated(Context& context, const MeshView& mesh,
+  /// What a machine took, in all and by stage.
+  struct Cycles {
+    std::string name;
+    std::uint64_t all = 0;
+    std::vector<model::StageRecord> stages;
+  };
+
+  static model::SimulationResult simulated(Context& context, const MeshView& mesh,
                                            const model::MachineConfig& config, bool rtl) {
     model::SimulationOptions options;
     options.keep_arrays = true;
     options.keep_broken = true;
     options.timeline_windows = 0;
     options.progress = context.progress.callback(rtl ? "RTL:" : "model:");
-    const model::SimulationResult result = take(rtl ? rtl::simulate_rtl(mesh, config, options)
-                                                    : model::simulate(mesh, config, options));
+    model::SimulationResult result = take(rtl ? rtl::simulate_rtl(mesh, config, options)
+                                              : model::simulate(mesh, config, options));
     stop_if_cancelled();
-    return stage_arrays(result);
+    return result;
   }
 
   int compare(Context& context, const std::string& scene, const model::MachineConfig& config,
-              const std::vector<Party>& parties) const {
+              const std::vector<Party>& parties, const std::vector<Cycles>& cycles) const {
     ordered_json json = json_of_program();
     json["source"] = scene_;
+    json["scene"] = scene;
     json["config"] = config.name;
     json["arrays"] = ordered_json::array();
     Table table({"stage", "array", "words", "result"});
@@ -111,10 +126,53 @@ class DiffCommand : public Command {
     context.output.line("scene                {}", scene);
     context.output.line("machine              {}", config.name);
     table.print(context.output);
+    print_cycles(context, cycles, json);
     context.output.line("{}", first.empty() ? "no difference" : "first difference     " + first);
     json["difference"] = first.empty() ? ordered_json(nullptr) : ordered_json(first);
     context.output.json(json, context.common.json);
     return first.empty() ? kDone : kCheckFailed;
+  }
+
+  // Both machines go through the same stages. Bit encoding has no cycles of its own: it works while
+  // the internal nodes come.
+  void print_cycles(Context& context, const std::vector<Cycles>& machines,
+                    ordered_json& json) const {
+    std::vector<std::string> head{"stage"};
+    for (const Cycles& machine : machines) head.push_back(machine.name + ", cycles");
+    if (machines.size() == 2) head.push_back("model off by, %");
+    Table table(head);
+    const auto row = [&](const std::string& name, const std::vector<std::uint64_t>& values) {
+      std::vector<std::string> cells{name};
+      ordered_json entry{{"stage", name}};
+      for (std::size_t m = 0; m < values.size(); ++m) {
+        cells.push_back(std::to_string(values[m]));
+        entry[machines[m].name + "_cycles"] = values[m];
+      }
+      if (values.size() == 2) {
+        const double rtl = static_cast<double>(values[1]);
+        const double off = 100 * (static_cast<double>(values[0]) - rtl) / rtl;
+        cells.push_back(rtl == 0 ? "" : fmt::format("{:+.2f}", off));
+        entry["model_off_percent"] = rtl == 0 ? ordered_json(nullptr) : ordered_json(off);
+      }
+      table.row(cells);
+      json["cycles"].push_back(entry);
+    };
+    json["cycles"] = ordered_json::array();
+    for (std::size_t s = 0; s < machines.front().stages.size(); ++s) {
+      const std::string& name = machines.front().stages[s].name;
+      if (!stage_.empty() && name != stage_) continue;
+      std::vector<std::uint64_t> values;
+      for (const Cycles& machine : machines) {
+        values.push_back(machine.stages[s].end_cycle - machine.stages[s].begin_cycle);
+      }
+      row(name, values);
+    }
+    if (stage_.empty()) {
+      std::vector<std::uint64_t> values;
+      for (const Cycles& machine : machines) values.push_back(machine.all);
+      row("all", values);
+    }
+    if (!json["cycles"].empty()) table.print(context.output);
   }
 
   static ordered_json record(const ArrayComparison& array, const std::vector<Party>& parties) {

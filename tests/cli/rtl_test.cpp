@@ -3,6 +3,7 @@
 // waveforms, and what cannot be done answered with what can.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <set>
@@ -187,6 +188,20 @@ TEST(CliDiff, AllThreeAreTheSame) {
   EXPECT_EQ(stages,
             (std::vector<std::string>{"scene_bound", "morton_code", "radix_sort", "leaf_node",
                                       "internal_node", "bit_encoding", "path_compression"}));
+
+  // The cycles are those of simulate, stage by stage and in all.
+  const json& cycles = all["cycles"];
+  ASSERT_EQ(cycles.size(), simulated["stages"].size() + 1);
+  for (std::size_t s = 0; s < simulated["stages"].size(); ++s) {
+    EXPECT_EQ(cycles[s]["stage"], simulated["stages"][s]["stage"]);
+    EXPECT_EQ(cycles[s]["rtl_cycles"], simulated["stages"][s]["cycles"]);
+  }
+  const json& sum = cycles.back();
+  EXPECT_EQ(sum["stage"], "all");
+  EXPECT_EQ(sum["rtl_cycles"], simulated["cycles"]);
+  EXPECT_GT(sum["model_cycles"], 0);
+  EXPECT_LT(std::abs(sum["model_off_percent"].get<double>()), 3);
+  EXPECT_NE(text.out.find("model off by, %"), std::string::npos) << text.out;
 }
 
 TEST(CliDiff, AStageAndAnEngineAlone) {
@@ -200,6 +215,9 @@ TEST(CliDiff, AStageAndAnEngineAlone) {
   const json sort = json::parse(read_file(folder.path("d.json")));
   ASSERT_EQ(sort["arrays"].size(), 2u);
   EXPECT_EQ(sort["arrays"][1]["array"], "sorted_ids");
+  ASSERT_EQ(sort["cycles"].size(), 1u);
+  EXPECT_GT(sort["cycles"][0]["model_cycles"], 0);
+  EXPECT_FALSE(sort["cycles"][0].contains("rtl_cycles"));
   EXPECT_GT(sort["arrays"][1]["words"], 100);
 }
 
