@@ -137,7 +137,14 @@ sections=$(grep -c '^<section ' "$page")
 note "$sheets sheets of paper for $sections sections"
 [ "$sheets" -ge "$sections" ] || complain "fewer sheets than sections"
 open_page "$page" --window-size=1280,4000 --screenshot="$keep/screen.png" || complain "no screenshot"
-[ "$(stat -c %s "$keep/screen.png")" -gt 20000 ] || complain "the screenshot is empty"
+# Windows are not as narrow as a phone; a frame is.
+printf '<!DOCTYPE html><body style="margin: 0"><iframe width="390" height="6000" src="%s"></iframe>' \
+  "file://$page" >"$work/phone.html"
+open_page "$work/phone.html" --window-size=500,6000 --screenshot="$keep/phone.png" ||
+  complain "no screenshot"
+for picture in screen phone; do
+  [ "$(stat -c %s "$keep/$picture.png")" -gt 20000 ] || complain "the picture $picture.png is empty"
+done
 
 [ "$bad" -eq 0 ] && note "the report is in order"
 exit "$bad"
