@@ -30,7 +30,7 @@ struct ModuleResources {
 /// In the paper's order, "all" last.
 std::vector<ModuleResources> reproduce_table1();
 
-/// `reasons`: with the reasons, which are long.
+/// `reasons`: with the reasons, which are long, and with longer headers.
 Table table_of(const std::vector<ModuleResources>& rows, bool reasons);
 nlohmann::ordered_json json_of(const ModuleResources& row);
 

@@ -56,6 +56,8 @@ path.middle { stroke: var(--soft); fill: none; vector-effect: non-scaling-stroke
   figure, tr, img, .tiles div { break-inside: avoid; }
   thead { display: table-header-group; }
   .scroll { overflow: visible; }
+  details::details-content { content-visibility: visible; block-size: auto; }
+  summary { list-style: none; }
   table { font-size: 7.5pt; min-width: 0; width: 100%; }
   th, td { white-space: normal; padding: 0.15rem 0.3rem; }
   th.words, td.words { min-width: 0; }
