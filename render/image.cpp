@@ -89,20 +89,13 @@ namespace {
 // stb counts bytes in int: raw picture and deflated worst case have to stay below 2^30.
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 28;
 
-Status write_file(std::span<const unsigned char> bytes, const std::string& path) {
-  Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file.ok()) return file.status();
-  if (Status status = file.value().write(std::as_bytes(bytes)); !status.ok()) return status;
-  return file.value().commit();
-}
-
 }  // namespace
 
-Status write_png(const Image& image, const std::string& path) {
+Result<std::vector<std::byte>> encode_png(const Image& image) {
   const std::uint64_t pixels = std::uint64_t{image.width} * image.height;
   if (pixels == 0 || pixels > kMaxPixels || image.rgb.size() != 3 * pixels) {
     return Status(StatusCode::invalid_argument,
-                  "cannot write " + path + ": an image of " + std::to_string(image.width) + " x " +
+                  "an image of " + std::to_string(image.width) + " x " +
                       std::to_string(image.height) + " pixels with " +
                       std::to_string(image.rgb.size()) +
                       " bytes; it needs 3 bytes a pixel and 1 to 2^28 pixels");
@@ -114,14 +107,26 @@ Status write_png(const Image& image, const std::string& path) {
         image.rgb.data(), static_cast<int>(3 * image.width), static_cast<int>(image.width),
         static_cast<int>(image.height), 3, &size);
     if (bytes == nullptr || size <= 0)
-      return Status(StatusCode::resource_limit, "cannot encode the picture for " + path);
-    return write_file({bytes, static_cast<std::size_t>(size)}, path);
+      return Status(StatusCode::resource_limit, "the picture cannot be encoded");
+    const auto* first = reinterpret_cast<const std::byte*>(bytes);
+    return std::vector<std::byte>(first, first + size);
   } catch (const std::runtime_error& error) {
-    return Status(StatusCode::io_error, "cannot encode " + path + ": " + error.what());
+    return Status(StatusCode::io_error, error.what());
   } catch (const std::bad_alloc&) {
     return Status(StatusCode::resource_limit,
-                  "out of memory while encoding " + path + "; ask for a smaller picture");
+                  "out of memory while encoding; ask for a smaller picture");
   }
+}
+
+Status write_png(const Image& image, const std::string& path) {
+  const Result<std::vector<std::byte>> bytes = encode_png(image);
+  if (!bytes.ok()) {
+    return Status(bytes.status().code(), "cannot write " + path + ": " + bytes.status().message());
+  }
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file.ok()) return file.status();
+  if (Status status = file.value().write(bytes.value()); !status.ok()) return status;
+  return file.value().commit();
 }
 
 }  // namespace fasttree::render

@@ -2,6 +2,7 @@
 // A picture in memory, and its way into a PNG file.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -18,6 +19,10 @@ struct Image {
 
   friend bool operator==(const Image&, const Image&) = default;
 };
+
+/// The picture as the bytes of a PNG file. invalid_argument: an image without pixels or of the
+/// wrong size; resource_limit: the memory is full.
+Result<std::vector<std::byte>> encode_png(const Image& image);
 
 /// Writes the picture to a temporary name beside `path`, flushes it and renames it into place, so
 /// that `path` holds either what it held before or the whole picture. invalid_argument: an image

@@ -82,6 +82,20 @@ TEST_F(ImageTest, ReadsBackWhatItWrote) {
   EXPECT_EQ(files(), 1u) << "temporary files left behind";
 }
 
+TEST_F(ImageTest, EncodesInMemoryWhatItWrites) {
+  const Image image = make_image(33, 17, true);
+  const fs::path path = folder_ / "a.png";
+  ASSERT_TRUE(write_png(image, path).ok());
+  const auto bytes = encode_png(image);
+  ASSERT_TRUE(bytes.ok());
+  std::ifstream file(path, std::ios::binary);
+  const std::string written((std::istreambuf_iterator<char>(file)),
+                            std::istreambuf_iterator<char>());
+  EXPECT_EQ(written,
+            std::string(reinterpret_cast<const char*>(bytes.value().data()), bytes.value().size()));
+  EXPECT_EQ(encode_png(Image{3, 3, {}}).status().code(), StatusCode::invalid_argument);
+}
+
 TEST_F(ImageTest, ReplacesWholeFilesOnly) {
   const fs::path path = folder_ / "a.png";
   ASSERT_TRUE(write_png(make_image(64, 64, true), path).ok());

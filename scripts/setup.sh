@@ -17,7 +17,8 @@ build=(g++ cmake ninja-build pkg-config libtbb-dev libhwy-dev libxxhash-dev libf
        libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libfast-float-dev libstb-dev
        libembree-dev libsdl2-dev zlib1g-dev verilator ca-certificates curl jq)
 test=(libgtest-dev librapidcheck-dev libtinyobjloader-dev)
-ci=(clang-14 libclang-rt-14-dev clang-format gcovr libbenchmark-dev yosys z3 qflow-tech-osu018)
+ci=(clang-14 libclang-rt-14-dev clang-format gcovr libbenchmark-dev yosys z3 qflow-tech-osu018
+    chromium)
 
 wanted=("${build[@]}")
 list=no

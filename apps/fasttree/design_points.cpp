@@ -305,6 +305,17 @@ std::vector<Variation> assumptions(const MachineConfig& base) {
   return variations;
 }
 
+KeyInfo key_info(const MachineConfig& config, const std::string& key) {
+  MachineConfig copy = config;
+  for (const Section& section : model::config_sections()) {
+    for (const Field& field : section.fields) {
+      if ((section.name.empty() ? "" : section.name + ".") + field.key != key) continue;
+      return {field.comment, text_of(field.get(section.of(copy)))};
+    }
+  }
+  return {};
+}
+
 std::vector<DesignPoint> listed_points(const MachineConfig& base, const std::string& path) {
   std::vector<DesignPoint> points =
       path.ends_with(".toml") ? from_toml(base, path) : from_csv(base, path);

@@ -37,6 +37,12 @@ std::vector<DesignPoint> single_points(const model::MachineConfig& base,
 /// declare, half and twice its value, or the other choices; and the choices of the memory.
 std::vector<Variation> assumptions(const model::MachineConfig& base);
 
+/// What a key ("section.key") means, as its comment says, and holds.
+struct KeyInfo {
+  std::string comment, value;
+};
+KeyInfo key_info(const model::MachineConfig& config, const std::string& key);
+
 /// From a file: CSV with keys as its header and a point a row, or TOML with [[point]] tables; a
 /// column or key "name" labels a point.
 std::vector<DesignPoint> listed_points(const model::MachineConfig& base, const std::string& path);

@@ -79,8 +79,12 @@ class Crew {
   };
 
   Crew(std::vector<std::unique_ptr<Job>> jobs, std::vector<std::optional<ExploredRun>>& slots,
-       ResultsFile& file, std::uint64_t memory_bytes)
-      : jobs_(std::move(jobs)), slots_(slots), file_(file), free_bytes_(memory_bytes) {
+       ResultsFile& file, std::uint64_t memory_bytes, std::uint32_t timeline_windows)
+      : jobs_(std::move(jobs)),
+        slots_(slots),
+        file_(file),
+        timeline_windows_(timeline_windows),
+        free_bytes_(memory_bytes) {
     for (const auto& job : jobs_) all_work_ += work_of(*job);
   }
 
@@ -156,15 +160,20 @@ class Crew {
   std::optional<ExploredRun> simulate(Job& job) const {
     ExploredRun run = *slots_[job.slot];
     model::SimulationOptions options;
-    options.timeline_windows = 0;
+    options.timeline_windows = timeline_windows_;
     options.progress = [&](const char*, double fraction) {
       job.fraction = fraction;
       return !stop_ && !cancelled();
     };
-    const auto result = model::simulate(job.scene->scene.view, job.point->config, options);
+    auto result = model::simulate(job.scene->scene.view, job.point->config, options);
     if (result.status().code() == StatusCode::cancelled) return std::nullopt;
     run.status = result.ok() ? "done" : "refused: " + result.status().message();
-    if (result.ok()) set_costs(run, job.point->config, result.value());
+    if (!result.ok()) return run;
+    set_costs(run, job.point->config, result.value());
+    if (timeline_windows_ > 0) {
+      result.value().tree = Tree();
+      run.account = std::make_shared<const model::SimulationResult>(std::move(result).value());
+    }
     return run;
   }
 
@@ -186,6 +195,7 @@ class Crew {
   std::vector<std::unique_ptr<Job>> jobs_;
   std::vector<std::optional<ExploredRun>>& slots_;
   ResultsFile& file_;
+  std::uint32_t timeline_windows_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::uint64_t free_bytes_;
@@ -225,7 +235,7 @@ std::uint64_t simulation_bytes(const MachineConfig& config, std::uint64_t triang
 
 Exploration explore(Context& context, const std::vector<DesignPoint>& points,
                     const std::vector<ExploredScene>& scenes, ResultsFile& file,
-                    std::uint64_t memory_bytes) {
+                    std::uint64_t memory_bytes, std::uint32_t timeline_windows) {
   std::vector<std::optional<ExploredRun>> slots;
   std::vector<std::unique_ptr<Crew::Job>> jobs;
   std::map<std::string, std::size_t> first_of;  // slots of the same configuration and scene
@@ -265,7 +275,7 @@ Exploration explore(Context& context, const std::vector<DesignPoint>& points,
     }
   }
   const std::size_t made = jobs.size();
-  Crew(std::move(jobs), slots, file, memory_bytes).run(context, made);
+  Crew(std::move(jobs), slots, file, memory_bytes, timeline_windows).run(context, made);
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const ExploredRun& first = *slots[same_as[i]];
     if (first.status.empty()) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "command.h"
 #include "design_points.h"
 #include "inputs.h"
+#include "model/report/simulation.h"
 
 namespace fasttree::app {
 
@@ -27,6 +29,8 @@ struct ExploredRun {
   std::string tree_hash;
   /// Cycles of each stage, in their order; not in the file.
   std::vector<std::pair<std::string, std::uint64_t>> stages;
+  /// The whole account, without the tree, where explore() was asked for timelines; not in the file.
+  std::shared_ptr<const model::SimulationResult> account;
 
   bool done() const { return status == "done"; }
 };
@@ -74,9 +78,10 @@ struct Exploration {
 };
 
 /// On context.threads cores, as many at once as `memory_bytes` allows. A point that a machine
-/// refuses is a result too, with the reason as its status.
+/// refuses is a result too, with the reason as its status. With `timeline_windows` each run that is
+/// made keeps its account with a timeline of about so many samples.
 Exploration explore(Context& context, const std::vector<DesignPoint>& points,
                     const std::vector<ExploredScene>& scenes, ResultsFile& file,
-                    std::uint64_t memory_bytes);
+                    std::uint64_t memory_bytes, std::uint32_t timeline_windows = 0);
 
 }  // namespace fasttree::app

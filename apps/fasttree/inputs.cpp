@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <utility>
 
 #include "fasttree/tree_file.h"
@@ -24,6 +25,17 @@ std::uint64_t most_of_memory() {
     if (std::ifstream file(path); file >> limit) bytes = std::min(bytes, limit);
   }
   return bytes / 5 * 4;
+}
+
+std::string processor_name() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.rfind("model name", 0) == 0 && colon != std::string::npos) {
+      return line.substr(colon + 2);
+    }
+  }
+  return "unknown";
 }
 
 const Choices<Profile>& profiles() {

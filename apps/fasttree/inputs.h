@@ -22,6 +22,9 @@ namespace fasttree::app {
 /// Most of the memory this process may use: of the machine's, or of its control group's.
 std::uint64_t most_of_memory();
 
+/// The processor's name as the system has it; "unknown" where it does not tell.
+std::string processor_name();
+
 /// Options about how to build, shared by the subcommands that do.
 struct BuildOptions {
   BuildSettings settings;

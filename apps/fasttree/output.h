@@ -46,6 +46,8 @@ class Table {
   void row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
   void print(Output& output) const;
   std::string csv() const;
+  /// The header, then the rows.
+  const std::vector<std::vector<std::string>>& cells() const { return rows_; }
 
  private:
   std::vector<std::vector<std::string>> rows_;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// fasttree reproduce: the paper's Tables I, II and III beside our figures.
+// fasttree reproduce: the paper's Tables I, II and III beside our figures, or all of its
+// evaluation.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -23,6 +22,7 @@
 #include "output.h"
 #include "paper_tables.h"
 #include "progress.h"
+#include "reproduce_all.h"
 #include "reproduction.h"
 #include "table1.h"
 
@@ -58,21 +58,12 @@ std::vector<std::string> mesh_files(const std::string& folder) {
   return names;
 }
 
-std::string processor_name() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);) {
-    const std::size_t colon = line.find(": ");
-    if (line.rfind("model name", 0) == 0 && colon != std::string::npos) {
-      return line.substr(colon + 2);
-    }
-  }
-  return "unknown";
-}
-
 class ReproduceCommand : public Command {
  public:
   const char* name() const override { return "reproduce"; }
-  const char* summary() const override { return "The paper's Tables I, II and III beside ours"; }
+  const char* summary() const override {
+    return "The paper's tables, or all of its evaluation, beside ours";
+  }
   const char* details() const override {
     return "table1: what synthesis makes of each unit of the RTL, beside the paper's prototype.\n"
            "table2: build times of the paper's machine, simulated: the FPGA prototype, the ASIC "
@@ -81,50 +72,42 @@ class ReproduceCommand : public Command {
            "of its own memory. table3: the paper's comparison, with the simulated machines and\n"
            "this library, measured here. A scene of the paper is known by its file's name\n"
            "(bunny, sibenik, fairy_forest, conference, dragon, happy_buddha) and its count of\n"
-           "triangles, within 1 %; any other goes under its own name without a paper's value.\n\n"
-           "Example:\n  fasttree reproduce table1\n"
+           "triangles, within 1 %; any other goes under its own name without a paper's value.\n"
+           "all: all tables, Figures 1 and 5, our own machine, and what each assumption is worth, "
+           "as\n"
+           "one page that needs nothing else, with the figures as JSON and CSV beside it. Without\n"
+           "scenes built-in ones stand in.\n\n"
+           "Example:\n  fasttree reproduce all --scenes meshes --out report\n"
+           "  fasttree reproduce all --quick\n  fasttree reproduce table1\n"
            "  fasttree reproduce table2 --scenes meshes --csv table2.csv\n"
            "  fasttree reproduce table3 --scene bunny.ply --repeat 9";
   }
 
   void declare(Options& options) override {
-    options.positional(table_, "TABLE", "table1, table2 or table3");
+    options.positional(table_, "TABLE", "table1, table2, table3 or all");
     options.text(folder_, "--scenes", "FOLDER", "All meshes of a folder");
     options.texts(scenes_, "--scene", "SCENE", "A scene; may be repeated");
-    options.count(repeat_, "--repeat", "Builds of the library, for a median (table3)", 1, 1000);
+    options.count(repeat_, "--repeat", "Builds of the library, for a median (table3, all)", 1,
+                  1000);
     options.number(within_, "--within", "Fail (1) where a ratio is further from 1, in %", 0, 1000);
     options.text(csv_, "--csv", "FILE", "Write the table as CSV");
+    options.text(out_, "--out", "FOLDER", "Where the page goes, and its figures beside it (all)");
+    options.flag(quick_, "--quick", "Small pictures, built-in scenes and one measured frame (all)");
     options.size(memory_bytes_, "--memory-limit", "Memory the simulations may take, such as 2G",
                  "4/5 of the machine's");
   }
 
   int run(Context& context) override {
-    if (table_ == "table1") {
-      if (!folder_.empty() || !scenes_.empty() || within_) {
-        throw Failure{kUsage,
-                      "table1 is of the RTL, without scenes or a time: --scenes, --scene "
-                      "and --within are for table2 and table3"};
-      }
-      return reproduce_table1(context, csv_);
-    }
-    if (table_ != "table2" && table_ != "table3") {
-      const std::string near = nearest(table_, {"table1", "table2", "table3"});
-      throw Failure{kUsage,
-                    fmt::format("there is no table '{}'; give table1, table2 or table3{}", table_,
-                                near.empty() ? "" : fmt::format("; did you mean {}?", near))};
-    }
+    check_usage();
+    if (table_ == "table1") return report_table1(context, csv_);
+    if (table_ == "all") return whole(context);
     if (folder_.empty() && scenes_.empty()) {
       throw Failure{kUsage, "reproduce needs scenes: --scenes FOLDER or --scene SCENE"};
     }
-    std::vector<std::string> names =
-        folder_.empty() ? std::vector<std::string>{} : mesh_files(folder_);
-    names.insert(names.end(), scenes_.begin(), scenes_.end());
-    if (names.empty()) throw Failure{kBadInput, folder_ + ": has no meshes"};
-    const std::vector<ExploredScene> scenes = load_scenes(context, names);
+    const std::vector<ExploredScene> scenes = load_scenes(context, scene_names());
     const std::vector<DesignPoint> points = machines();
     ResultsFile nowhere("");
-    const Exploration made = explore(context, points, scenes, nowhere,
-                                     memory_bytes_ > 0 ? memory_bytes_ : most_of_memory());
+    const Exploration made = explore(context, points, scenes, nowhere, memory_limit());
     context.progress.clear();
     if (made.cancelled) throw Failure{kCancelled, "cancelled"};
     for (const ExploredRun& run : made.runs) {
@@ -152,6 +135,49 @@ class ReproduceCommand : public Command {
   }
 
  private:
+  void check_usage() const {
+    const std::vector<std::string> tables = {"table1", "table2", "table3", "all"};
+    if (std::find(tables.begin(), tables.end(), table_) == tables.end()) {
+      const std::string near = nearest(table_, tables);
+      throw Failure{
+          kUsage, fmt::format("there is no table '{}'; give table1, table2, table3 or all{}",
+                              table_, near.empty() ? "" : fmt::format("; did you mean {}?", near))};
+    }
+    if (table_ == "table1" && (!folder_.empty() || !scenes_.empty() || within_)) {
+      throw Failure{kUsage,
+                    "table1 is of the RTL, without scenes or a time: --scenes, --scene "
+                    "and --within are for table2, table3 and all"};
+    }
+    if (table_ == "all" && !csv_.empty()) {
+      throw Failure{kUsage, "--csv is for one table; all writes its tables into the --out folder"};
+    }
+    if (table_ != "all" && (quick_ || !out_.empty())) {
+      throw Failure{kUsage, fmt::format("--out and --quick are for all, not for {}", table_)};
+    }
+  }
+
+  int whole(Context& context) const {
+    EvaluationSettings settings;
+    settings.scenes = scene_names();
+    settings.quick = quick_;
+    settings.repeat = repeat_;
+    settings.memory_bytes = memory_limit();
+    return reproduce_all(context, settings, out_.empty() ? "report" : out_, within_);
+  }
+
+  /// Of the folder, then those given one by one.
+  std::vector<std::string> scene_names() const {
+    std::vector<std::string> names =
+        folder_.empty() ? std::vector<std::string>{} : mesh_files(folder_);
+    names.insert(names.end(), scenes_.begin(), scenes_.end());
+    if (!folder_.empty() && names.empty()) throw Failure{kBadInput, folder_ + ": has no meshes"};
+    return names;
+  }
+
+  std::uint64_t memory_limit() const {
+    return memory_bytes_ > 0 ? memory_bytes_ : most_of_memory();
+  }
+
   std::vector<DesignPoint> machines() const {
     std::vector<DesignPoint> points;
     const auto names = table_ == "table2"
@@ -161,10 +187,6 @@ class ReproduceCommand : public Command {
       points.push_back({config, {}, take(model::load_config(config))});
     }
     return points;
-  }
-
-  static const PaperBuild* paper_of(const ExploredScene& scene) {
-    return paper_build(fs::path(scene.name).stem().string(), scene.scene.view.triangle_count);
   }
 
   /// Of each profile that a hardware engine is an answer to: the paper's and the fastest.
@@ -203,13 +225,7 @@ class ReproduceCommand : public Command {
                           : "Table II: kd-tree build time of the paper's machine, ours beside its");
     output.line("");
     if (costs) {
-      Table paper({"in the paper", "platform", "scene", "ms", "MHz", "nm", "mm2", "W"});
-      for (const PaperPlatform& p : paper_table3()) {
-        paper.row({p.work, p.platform, p.scene, fmt::format("{:g}", p.build_ms),
-                   fmt::format("{:g}", p.clock_mhz), fmt::format("{:g}", p.process_nm), p.area_mm2,
-                   p.power_w});
-      }
-      paper.print(output);
+      paper_table3_table().print(output);
       output.line("");
     }
     table_of(rows, costs, false).print(output);
@@ -228,10 +244,7 @@ class ReproduceCommand : public Command {
     }
     output.line("A ratio is our time over the paper's, a triangle.");
     if (!csv_.empty()) output.file(table_of(rows, costs, true).csv(), csv_);
-    double worst = 0;
-    for (const Compared& row : rows) {
-      if (const auto ratio = row.ratio()) worst = std::max(worst, std::abs(*ratio - 1) * 100);
-    }
+    const double worst = worst_percent(rows);
     output.json(json(rows, skipped, worst), context.common.json);
     if (within_ && worst > *within_) {
       throw Failure{kCheckFailed,
@@ -251,24 +264,16 @@ class ReproduceCommand : public Command {
     if (table_ == "table3") {
       json["processor"] = processor_name();
       json["paper"] = ordered_json::array();
-      for (const PaperPlatform& p : paper_table3()) {
-        json["paper"].push_back({{"work", p.work},
-                                 {"platform", p.platform},
-                                 {"scene", p.scene},
-                                 {"time_ms", p.build_ms},
-                                 {"clock_mhz", p.clock_mhz},
-                                 {"process_nm", p.process_nm},
-                                 {"area_mm2", p.area_mm2},
-                                 {"power_w", p.power_w}});
-      }
+      for (const PaperPlatform& p : paper_table3()) json["paper"].push_back(app::json_of(p));
     }
     return json;
   }
 
-  std::string table_, folder_, csv_;
+  std::string table_, folder_, csv_, out_;
   std::vector<std::string> scenes_;
   std::uint32_t repeat_ = 5;
   std::optional<double> within_;
+  bool quick_ = false;
   std::uint64_t memory_bytes_ = 0;
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 namespace fasttree::app {
@@ -54,6 +55,11 @@ std::string number(const std::optional<double>& value, int digits) {
 }
 
 }  // namespace
+
+const PaperBuild* paper_of(const ExploredScene& scene) {
+  return paper_build(std::filesystem::path(scene.name).stem().string(),
+                     scene.scene.view.triangle_count);
+}
 
 std::optional<double> Compared::ratio() const {
   if (!paper_ms || paper_triangles == 0 || triangles == 0) return std::nullopt;
@@ -118,10 +124,19 @@ std::vector<Compared> reproduce_table3(const std::string& scene, const PaperBuil
     row.triangles = rows.empty() ? 0 : rows.front().triangles;
     row.time_ms = time.build_ms;
     row.area_mm2 = row.power_w = "-";
+    row.measured = true;
     row.reason = "this machine's processor; nothing of the paper to compare with";
     rows.push_back(std::move(row));
   }
   return rows;
+}
+
+double worst_percent(const std::vector<Compared>& rows) {
+  double worst = 0;
+  for (const Compared& row : rows) {
+    if (const auto ratio = row.ratio()) worst = std::max(worst, std::abs(*ratio - 1) * 100);
+  }
+  return worst;
 }
 
 Table table_of(const std::vector<Compared>& rows, bool costs, bool reasons) {
@@ -157,6 +172,16 @@ Table table_of(const std::vector<Compared>& rows, bool costs, bool reasons) {
   return table;
 }
 
+Table paper_table3_table() {
+  Table table({"in the paper", "platform", "scene", "ms", "MHz", "nm", "mm2", "W"});
+  for (const PaperPlatform& p : paper_table3()) {
+    table.row({p.work, p.platform, p.scene, fmt::format("{:g}", p.build_ms),
+               fmt::format("{:g}", p.clock_mhz), fmt::format("{:g}", p.process_nm), p.area_mm2,
+               p.power_w});
+  }
+  return table;
+}
+
 nlohmann::ordered_json json_of(const Compared& row) {
   const auto value = [](const std::optional<double>& v) {
     return v ? nlohmann::ordered_json(*v) : nlohmann::ordered_json(nullptr);
@@ -176,8 +201,15 @@ nlohmann::ordered_json json_of(const Compared& row) {
     json["area_mm2"] = row.area_mm2;
     json["power_w"] = row.power_w;
   }
+  json["measured"] = row.measured;
   json["reason"] = row.reason;
   return json;
+}
+
+nlohmann::ordered_json json_of(const PaperPlatform& p) {
+  return {{"work", p.work},         {"platform", p.platform},   {"scene", p.scene},
+          {"time_ms", p.build_ms},  {"clock_mhz", p.clock_mhz}, {"process_nm", p.process_nm},
+          {"area_mm2", p.area_mm2}, {"power_w", p.power_w}};
 }
 
 }  // namespace fasttree::app

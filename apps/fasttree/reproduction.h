@@ -14,6 +14,9 @@
 
 namespace fasttree::app {
 
+/// The scene of the paper that this one is, by its file's name and its size, or null.
+const PaperBuild* paper_of(const ExploredScene& scene);
+
 /// A value of ours beside the paper's, if it has one.
 struct Compared {
   std::string scene;   ///< the paper's name, or the file's where it is no scene of the paper
@@ -27,6 +30,7 @@ struct Compared {
   std::optional<double> cycles_per_triangle, paper_cycles_per_triangle;
   std::string area_mm2, power_w;  ///< Table III
   std::string reason;
+  bool measured = false;  ///< on this machine: another one, another time
 
   /// Ours over the paper's a triangle, so that a few triangles more do not count.
   std::optional<double> ratio() const;
@@ -49,8 +53,15 @@ std::vector<Compared> reproduce_table3(const std::string& scene, const PaperBuil
                                        const std::vector<const ExploredRun*>& machines,
                                        const std::vector<LibraryTime>& library);
 
+/// How far the ratio that is furthest from 1 is from it, in per cent.
+double worst_percent(const std::vector<Compared>& rows);
+
 /// `costs`: with area and power; `reasons`: with the reasons, which are long.
 Table table_of(const std::vector<Compared>& rows, bool costs, bool reasons);
 nlohmann::ordered_json json_of(const Compared& row);
+
+/// Table III as the paper prints it.
+Table paper_table3_table();
+nlohmann::ordered_json json_of(const PaperPlatform& platform);
 
 }  // namespace fasttree::app

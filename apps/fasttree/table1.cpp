@@ -35,22 +35,14 @@ constexpr PaperRow kPaper[] = {
 constexpr double kPaperMhz = 163;
 constexpr double kExplained = 0.25;  // differences over this have a reason
 
-/// What synthesis gave for a row's modules, together.
-struct OurRow {
-  int lut = 0;
-  int registers = 0;
-  int bram_kbits = 0;
-  int dsp = 0;
-  double mhz = 0;  ///< of the slowest; 0: no module
-  double gates = 0;
-};
-
 double far(double ours, double paper) {
   return paper > 0 ? std::abs(ours / paper - 1) : 0;
 }
 
-OurRow our_row(const ordered_json& all, const std::string& row) {
-  OurRow sum;
+/// What synthesis gave for a row's modules, together.
+ModuleResources our_row(const ordered_json& all, const std::string& row) {
+  ModuleResources sum;
+  sum.module = row;
   for (const ordered_json& unit : all["units"]) {
     const int count = unit["count"];
     if (count == 0 || (row != "all" && unit["row"] != row)) continue;
@@ -71,55 +63,90 @@ OurRow our_row(const ordered_json& all, const std::string& row) {
 
 }  // namespace
 
-int reproduce_table1(Context& context, const std::string& csv) {
+std::vector<ModuleResources> reproduce_table1() {
   const ordered_json all = ordered_json::parse(rtl::embedded_synthesis());
-  Table table({"module", "LUT", "paper", "ratio", "registers", "paper", "ratio", "BRAM, kbit",
-               "paper", "DSP", "MHz", "gates"});
+  std::vector<ModuleResources> rows;
+  for (const PaperRow& paper : kPaper) {
+    ModuleResources row = our_row(all, paper.module);
+    row.paper_lut = paper.lut;
+    row.paper_registers = paper.registers;
+    row.paper_bram_kbits = paper.bram_kbits;
+    if (std::max(far(row.lut, paper.lut), far(row.registers, paper.registers)) > kExplained) {
+      row.reason = all["reasons"].value(paper.module, "");
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+Table table_of(const std::vector<ModuleResources>& rows, bool reasons) {
+  const auto count = [](int n) { return with_commas(static_cast<unsigned>(n)); };
+  // Short on a terminal; in a file each column has a name of its own.
+  Table table(
+      reasons ? std::vector<std::string>{"module", "LUT", "LUT, paper", "LUT ratio", "registers",
+                                         "registers, paper", "register ratio", "BRAM, kbit",
+                                         "BRAM, paper", "DSP", "MHz", "gates", "reason"}
+              : std::vector<std::string>{"module", "LUT", "paper", "ratio", "registers", "paper",
+                                         "ratio", "BRAM, kbit", "paper", "DSP", "MHz", "gates"});
+  for (const ModuleResources& row : rows) {
+    std::vector<std::string> cells = {row.module,
+                                      count(row.lut),
+                                      count(row.paper_lut),
+                                      fmt::format("{:.2f}", row.lut_ratio()),
+                                      count(row.registers),
+                                      count(row.paper_registers),
+                                      fmt::format("{:.2f}", row.register_ratio()),
+                                      std::to_string(row.bram_kbits),
+                                      std::to_string(row.paper_bram_kbits),
+                                      std::to_string(row.dsp),
+                                      fmt::format("{:.0f}", row.mhz),
+                                      fmt::format("{:.0f}", row.gates)};
+    if (reasons) cells.push_back(row.reason);
+    table.row(std::move(cells));
+  }
+  return table;
+}
+
+ordered_json json_of(const ModuleResources& row) {
+  return {{"module", row.module},
+          {"lut", row.lut},
+          {"paper_lut", row.paper_lut},
+          {"registers", row.registers},
+          {"paper_registers", row.paper_registers},
+          {"bram_kbits", row.bram_kbits},
+          {"paper_bram_kbits", row.paper_bram_kbits},
+          {"dsp", row.dsp},
+          {"fmax_mhz", row.mhz},
+          {"at_paper_clock", row.mhz >= kPaperMhz},
+          {"gate_equivalents", row.gates},
+          {"reason", row.reason}};
+}
+
+const char* table1_basis() {
+  return "Yosys, xc7, unit by unit; MHz by a table of delays, without place and route, between "
+         "registers (the paper: 163); gates: cells of a 180 nm library over its NAND2, no memories";
+}
+
+bool within_paper(const std::vector<ModuleResources>& rows) {
+  const ModuleResources& whole = rows.back();
+  return whole.lut <= whole.paper_lut && whole.registers <= whole.paper_registers;
+}
+
+int report_table1(Context& context, const std::string& csv) {
+  const std::vector<ModuleResources> rows = reproduce_table1();
+  const bool within = within_paper(rows);
+  const Table table = table_of(rows, false);
+  table.print(context.output);
+  context.output.line("");
+  for (const ModuleResources& row : rows) {
+    if (!row.reason.empty()) context.output.line("{}: {}", row.module, row.reason);
+  }
+  context.output.line("{}", table1_basis());
+  context.output.line("the design is {} the paper's", within ? "smaller than" : "LARGER than");
   ordered_json json = json_of_program();
   json["table"] = "table1";
   json["rows"] = ordered_json::array();
-  std::vector<std::string> reasons;
-  OurRow sum;
-  for (const PaperRow& paper : kPaper) {
-    const OurRow ours = our_row(all, paper.module);
-    sum = ours;
-    const double lut_ratio = static_cast<double>(ours.lut) / paper.lut;
-    const double register_ratio = static_cast<double>(ours.registers) / paper.registers;
-    table.row({paper.module, with_commas(static_cast<unsigned>(ours.lut)),
-               with_commas(static_cast<unsigned>(paper.lut)), fmt::format("{:.2f}", lut_ratio),
-               with_commas(static_cast<unsigned>(ours.registers)),
-               with_commas(static_cast<unsigned>(paper.registers)),
-               fmt::format("{:.2f}", register_ratio), std::to_string(ours.bram_kbits),
-               std::to_string(paper.bram_kbits), std::to_string(ours.dsp),
-               fmt::format("{:.0f}", ours.mhz), fmt::format("{:.0f}", ours.gates)});
-    std::string reason;
-    if (std::max(far(ours.lut, paper.lut), far(ours.registers, paper.registers)) > kExplained) {
-      reason = all["reasons"].value(paper.module, "");
-      if (!reason.empty()) reasons.push_back(fmt::format("{}: {}", paper.module, reason));
-    }
-    json["rows"].push_back({{"module", paper.module},
-                            {"lut", ours.lut},
-                            {"paper_lut", paper.lut},
-                            {"registers", ours.registers},
-                            {"paper_registers", paper.registers},
-                            {"bram_kbits", ours.bram_kbits},
-                            {"paper_bram_kbits", paper.bram_kbits},
-                            {"dsp", ours.dsp},
-                            {"fmax_mhz", ours.mhz},
-                            {"at_paper_clock", ours.mhz >= kPaperMhz},
-                            {"gate_equivalents", ours.gates},
-                            {"reason", reason}});
-  }
-  table.print(context.output);
-  context.output.line("");
-  for (const std::string& reason : reasons) context.output.line("{}", reason);
-  const PaperRow& whole = std::end(kPaper)[-1];
-  const bool within = sum.lut <= whole.lut && sum.registers <= whole.registers;
-  context.output.line(
-      "Yosys, xc7, unit by unit; MHz by a table of delays, without place and route, between "
-      "registers (the paper: {:.0f}); gates: cells of a 180 nm library over its NAND2, no memories",
-      kPaperMhz);
-  context.output.line("the design is {} the paper's", within ? "smaller than" : "LARGER than");
+  for (const ModuleResources& row : rows) json["rows"].push_back(json_of(row));
   json["within_paper"] = within;
   if (!csv.empty()) {
     context.output.file(table.csv(), csv);

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sections about what the paper prints: its figures, tables and sentences.
+#include <fmt/format.h>
+
+#include "model/report/text.h"
+#include "report/base64.h"
+#include "report/figure1.h"
+#include "report/plots.h"
+#include "report/sections.h"
+#include "report/tables.h"
+
+namespace fasttree::app {
+namespace {
+
+using model::escaped_html;
+using report::Bar;
+using report::BarGroup;
+using report::note;
+using report::paragraph;
+
+/// The column called so; tables say of themselves which they have.
+std::size_t column(const Table& table, const std::string& name) {
+  const auto& header = table.cells().front();
+  std::size_t i = 0;
+  while (i < header.size() && header[i] != name) ++i;
+  return i;
+}
+
+std::vector<bool> measured_rows(const std::vector<Compared>& rows) {
+  std::vector<bool> list;
+  for (const Compared& row : rows) list.push_back(row.measured);
+  return list;
+}
+
+Bar bar_of(const std::string& label, std::size_t colour, double ms) {
+  return {label, {{colour, ms}}, fmt::format("{:.2f} ms", ms)};
+}
+
+/// Times of Table II a scene, ours beside the paper's.
+std::string table2_bars(const Evaluation& evaluation) {
+  std::vector<BarGroup> groups;
+  for (const Compared& row : evaluation.table2) {
+    if (groups.empty() || groups.back().title != row.scene) groups.push_back({row.scene, {}});
+    std::vector<Bar>& bars = groups.back().bars;
+    Bar ours = bar_of(row.figure, 0, row.time_ms);
+    if (const auto ratio = row.ratio()) ours.text += fmt::format(", x {:.2f}", *ratio);
+    // The paper has one figure for both ways to the ASIC.
+    const bool repeated = row.how == "paper-asic65";
+    if (row.paper_ms && !repeated) {
+      bars.push_back(bar_of(row.figure + ", paper", 2, *row.paper_ms));
+    }
+    bars.push_back(std::move(ours));
+  }
+  return report::stacked_bars({"this model", "in the paper", "in the paper"}, "ms", groups, false);
+}
+
+}  // namespace
+
+report::PageSection scenes_section(const Evaluation& evaluation) {
+  std::string gallery = "<div class=\"gallery\">\n";
+  for (const EvaluatedScene& scene : evaluation.scenes) {
+    const FrameSplit& frame = scene.frame;
+    gallery += report::figure(
+        report::picture(report::png_uri(frame.png),
+                        fmt::format("{}, drawn by tracing rays through its kd-tree", scene.name),
+                        frame.picture_width, frame.picture_height),
+        fmt::format("{}: {} triangles", scene.name, with_commas(scene.triangles)));
+  }
+  gallery += "</div>\n";
+  std::string body =
+      paragraph(
+          "The paper's Figure 5 shows its test scenes. These are drawn through the tree that "
+          "all machines of this page and the library have built.") +
+      gallery + report::html_table("Scenes and their trees", scene_table(evaluation).cells(), {1}) +
+      note(
+          "References a triangle: in how many cells of the grid one lies. <em>Same tree</em>: the "
+          "trees of all simulated machines have the hash of the library's, profile paper.");
+  if (!evaluation.skipped.empty()) {
+    body += "<h3>What is missing</h3>\n" +
+            report::html_table("Scenes that are not in this report",
+                               skipped_table(evaluation).cells(), {1, 2}) +
+            note(
+                "A scene of the paper is known by its file's name and its count of triangles, "
+                "within 1 %. Any other goes under its own name, without a value of the paper.");
+  }
+  return {"scenes", "Scenes (Figure 5)", body};
+}
+
+report::PageSection figure1_section(const Evaluation& evaluation) {
+  std::vector<BarGroup> groups;
+  for (const EvaluatedScene& scene : evaluation.scenes) {
+    BarGroup group{scene.name, {}};
+    for (const SplitRow& row : figure1_rows(scene)) {
+      group.bars.push_back({row.builder,
+                            {{0, row.tree_ms}, {1, row.layout_ms}, {2, row.trace_ms}},
+                            fmt::format("{:.1f} % construction", row.construction_percent()),
+                            true});
+    }
+    groups.push_back(std::move(group));
+  }
+  return {
+      "figure1", "Frame time: construction and traversal (Figure 1)",
+      paragraph("The paper's Figure 1, after Wu et al., shows that construction dominates the "
+                "frames of six scenes; it prints no numbers. Here a frame is the tree, the "
+                "tracer's own layout of it, and the primary and shadow rays, all on this "
+                "machine's processor. In the rows of an accelerator the tree's time is the "
+                "simulated machine's, at its configured clock; it builds the tree of profile "
+                "paper, so layout and tracing are that tree's.") +
+          report::figure(report::stacked_bars({"tree", "layout for the tracer", "tracing"}, "ms",
+                                              groups, false),
+                         "Each scene has a scale of its own: its slowest frame fills the width.") +
+          report::html_table(
+              "Parts of a frame", figure1_table(evaluation).cells(), {1},
+              std::vector<bool>(figure1_table(evaluation).cells().size() - 1, true))};
+}
+
+report::PageSection table1_section(const Evaluation& evaluation) {
+  const Table table = table_of(evaluation.table1, true);
+  return {
+      "table1", "Hardware resources (Table I)",
+      paragraph("What synthesis makes of the RTL, beside the paper's prototype on a Virtex-7.") +
+          report::html_table("LUTs, registers and block RAM a module, ours and the paper's",
+                             table.cells(), {column(table, "reason")}) +
+          note(escaped_html(table1_basis()))};
+}
+
+report::PageSection table2_section(const Evaluation& evaluation) {
+  const Table table = table_of(evaluation.table2, false, true);
+  return {
+      "table2", "Build times (Table II)",
+      paragraph("Three figures a scene: the FPGA prototype; the ASIC as the paper has it, the "
+                "prototype's cycles at 500 MHz; and the ASIC against the timing of its own "
+                "memory.") +
+          report::figure(table2_bars(evaluation),
+                         "Milliseconds a build; each scene has a scale of its own. The factor is "
+                         "our time over the paper's, a triangle.") +
+          report::html_table("Build times, ours and the paper's", table.cells(),
+                             {1, 2, column(table, "reason")}) +
+          note("A ratio is our time over the paper's, a triangle.")};
+}
+
+report::PageSection table3_section(const Evaluation& evaluation) {
+  const Table table = table_of(evaluation.table3, true, true);
+  return {"table3", "Against other builders (Table III)",
+          report::html_table("In the paper", paper_table3_table().cells(), {1, 2}) +
+              report::html_table("Here", table.cells(), {1, 2, column(table, "reason")},
+                                 measured_rows(evaluation.table3)) +
+              note(fmt::format("RayCore takes {:g} ms for a scene of 64,000 triangles; only scenes "
+                               "of about that size are set over it. The library runs on this "
+                               "machine's processor, whose area and power are not known here.",
+                               kRayCoreMs))};
+}
+
+report::PageSection text_section(const Evaluation& evaluation) {
+  const Table table = claim_table(evaluation);
+  return {"text", "Figures in the paper's text",
+          paragraph("What sections IV and V say besides the tables, beside configuration "
+                    "<code>paper-asic65</code>.") +
+              report::html_table("Figures of the text, ours and the paper's", table.cells(),
+                                 {0, column(table, "reason")})};
+}
+
+}  // namespace fasttree::app
