@@ -13,8 +13,8 @@
 namespace fasttree::rtl {
 namespace {
 
-constexpr std::size_t kOrderWords = sizeof(ft_accel_order) / 4;
-constexpr std::size_t kResultWords = sizeof(ft_accel_result) / 4;
+constexpr std::uint32_t kOrderWords = sizeof(ft_accel_order) / 4;
+constexpr std::uint32_t kResultWords = sizeof(ft_accel_result) / 4;
 constexpr std::size_t kRounds = 15, kWatchdog = 18;
 /// Where the fields of ft_pkg::state_t are.
 constexpr std::size_t kBusy = 0, kStage = 3, kError = 7, kResults = 15;
@@ -26,7 +26,7 @@ class Host {
     unit.s_axi_awvalid = unit.s_axi_wvalid = unit.s_axi_arvalid = 0;
     unit.s_axi_bready = unit.s_axi_rready = 0;
     unit.finished = 0;
-    for (std::size_t w = 0; w <= kResultWords; ++w) set_word(unit.state, w, 0);
+    for (std::uint32_t w = 0; w <= kResultWords; ++w) set_word(unit.state, w, 0);
     bench.reset();
   }
 
@@ -111,18 +111,18 @@ TEST(RtlRegisters, KeepTheOrderByteByByte) {
     expected[kRounds] = 8;
     expected[kWatchdog] = 1u << 20;
     for (int i = 0; i < 2000; ++i) {
-      const std::size_t word = host.bench.random() % kOrderWords;
+      const std::uint32_t word = host.bench.random() % kOrderWords;
       const std::uint32_t data = host.bench.random();
       const unsigned strobes = host.bench.random() % 16;
       const bool busy = host.bench.chance(20);
-      ASSERT_EQ(host.read(FT_ACCEL_ORDER + 4 * static_cast<std::uint32_t>(word)), expected[word]);
+      ASSERT_EQ(host.read(FT_ACCEL_ORDER + 4 * word), expected[word]);
       host.busy(busy);
-      host.write(FT_ACCEL_ORDER + 4 * static_cast<std::uint32_t>(word), data, strobes);
+      host.write(FT_ACCEL_ORDER + 4 * word, data, strobes);
       for (unsigned b = 0; b < 4 && !busy; ++b) {
         const std::uint32_t mask = 0xffu << (8 * b);
         if (strobes >> b & 1) expected[word] = (expected[word] & ~mask) | (data & mask);
       }
-      for (std::size_t w = 0; w < kOrderWords; ++w) {
+      for (std::uint32_t w = 0; w < kOrderWords; ++w) {
         ASSERT_EQ(get_word(host.unit.order, w), expected[w]) << i << ", word " << w;
       }
     }
@@ -133,24 +133,24 @@ TEST(RtlRegisters, KeepTheOrderByteByByte) {
 TEST(RtlRegisters, ShowTheStateAndNothingElsewhere) {
   Host host(3, 60);
   for (int i = 0; i < 50; ++i) {
-    for (std::size_t w = 0; w < kResultWords; ++w) {
+    for (std::uint32_t w = 0; w < kResultWords; ++w) {
       set_word(host.unit.state, w, host.bench.random());
     }
     set_word(host.unit.state, kResultWords, host.bench.random() & ((1u << kResults) - 1));
     const std::uint32_t low = get_word(host.unit.state, 0);
     EXPECT_EQ(host.read(FT_ACCEL_STATUS),
               (low & 7) | (low >> kStage & 15) << 4 | (low >> kError & 255) << 8);
-    for (std::size_t w = 0; w < kResultWords; ++w) {
+    for (std::uint32_t w = 0; w < kResultWords; ++w) {
       const std::uint32_t expected = get_word(host.unit.state, w) >> kResults |
                                      get_word(host.unit.state, w + 1) << (32 - kResults);
-      EXPECT_EQ(host.read(FT_ACCEL_RESULT + 4 * static_cast<std::uint32_t>(w)), expected) << w;
+      EXPECT_EQ(host.read(FT_ACCEL_RESULT + 4 * w), expected) << w;
     }
   }
   EXPECT_EQ(host.read(FT_ACCEL_ID), FT_ACCEL_ID_VALUE);
   EXPECT_EQ(host.read(FT_ACCEL_VERSION), 1u);
   EXPECT_EQ(host.read(FT_ACCEL_CAPABILITIES), 0x20040410u);
   for (const std::uint32_t address :
-       {0x00cu, FT_ACCEL_ORDER + 4u * kOrderWords, FT_ACCEL_RESULT + 4u * kResultWords, 0xffcu}) {
+       {0x00cu, FT_ACCEL_ORDER + 4 * kOrderWords, FT_ACCEL_RESULT + 4 * kResultWords, 0xffcu}) {
     host.write(address, ~0u);
     EXPECT_EQ(host.read(address), 0u) << address;
   }
