@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // ft_lru with the cache's sixteen ways, piece by piece, where lru.sv takes eight as a whole: a pair of
-// ways changes when one of the two is used, and then as it should; of any three ways that were in an
-// order, the next order is one too; so that all of them are, and one way alone is the oldest. One step is
-// enough: the first order (all zeros) is an order.
+// ways changes when one of the two is used, and then as it should; any three ways that were in an order
+// are in one again. So all sixteen are, for the first order (all zeros) is one, and an order of ways has
+// one oldest, which is the way that all others were used after.
 // engine: sat
 // sources: units/ft_lru.sv
 // fault: units/ft_lru.sv: used[i] || (order[Pair] && !used[j]) => used[i] || order[Pair]
@@ -14,9 +14,8 @@ module proof (
 );
   localparam int Ways = 16;
   logic [119:0] updated;
-  logic [Ways-1:0] used, oldest;
+  logic [Ways-1:0] used, oldest, all_after;
   logic [Ways*Ways-1:0] before, next;  // bit 16 * i + j: way i was used after way j
-  logic ordered;
 
   assign used = 16'd1 << use_way;
   ft_lru #(.WAYS(Ways)) dut (.order, .used, .updated, .oldest);
@@ -34,23 +33,19 @@ module proof (
   end
 
   always_comb begin
-    ordered = 1'b1;
     for (int i = 0; i < Ways; i++) begin
-      for (int j = i + 1; j < Ways; j++) begin
-        assert (next[Ways*i+j] == (used[i] ? 1'b1 : used[j] ? 1'b0 : before[Ways*i+j]));
-        for (int k = j + 1; k < Ways; k++) begin
-          // Not round in a circle, in either direction.
-          if ((before[Ways*i+j] == before[Ways*j+k]) && (before[Ways*j+k] == before[Ways*k+i]))
-            ordered = 1'b0;
-          else
-            assert (!(next[Ways*i+j] == next[Ways*j+k] && next[Ways*j+k] == next[Ways*k+i]));
-        end
+      all_after[i] = 1'b1;
+      for (int j = 0; j < Ways; j++) begin
+        if (i != j && !before[Ways*j+i]) all_after[i] = 1'b0;
       end
-    end
-    if (ordered) begin
-      assert (oldest != '0);
-      for (int i = 0; i < Ways; i++) begin
-        for (int j = 0; j < Ways; j++) if (i != j && oldest[i]) assert (before[Ways*j+i]);
+      assert (oldest[i] == all_after[i]);
+      for (int j = i + 1; j < Ways; j++) begin
+        assert (next[Ways*i+j] == (used[i] || (before[Ways*i+j] && !used[j])));
+        for (int k = j + 1; k < Ways; k++) begin
+          // Not round in a circle, either way.
+          if (before[Ways*i+j] != before[Ways*j+k] || before[Ways*j+k] != before[Ways*k+i])
+            assert (next[Ways*i+j] != next[Ways*j+k] || next[Ways*j+k] != next[Ways*k+i]);
+        end
       end
     end
   end
