@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Plants faults in a copy of the RTL, one at a time, and expects the test that each names to fail.
-# rtl/mutations/*.txt list them: file, find (occurs once), replace, test, why.
+# rtl/mutations/*.txt list them: file, find (occurs once), replace, test, why; and from there on in its
+# list, models: in which of the verilated models that the test includes it is planted (else in all).
 #
 #   rtl/mutations/run.sh [--first N] [LIST...]    default: every fault of every list
 #
-# The tests are compiled once, in build/. Of a fault only the models that its test includes are made
-# anew, and linked before those of build/. Warnings of Verilator do not count: the test has to see it.
+# The tests are compiled once, in build/. For a fault only its models are made anew, and linked before
+# those of build/. Warnings of Verilator do not count: the test has to see it.
 # out/mutations/LIST.md holds a list's outcome as rows of a table.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -27,6 +28,7 @@ done
 root=$PWD
 work=$root/out/mutations
 mkdir -p "$work"
+scratch=$(mktemp -d "$work/faults.XXXXXX")
 if command -v ccache >/dev/null; then export OBJCACHE=ccache; fi
 export GTEST_FAIL_FAST=1
 
@@ -38,7 +40,7 @@ binary_of() {
   esac
 }
 
-# models_of TEST: the verilated classes that its file includes, or the machine's first variant.
+# models_of TEST: what its file includes of them, or the machine's first variant.
 models_of() {
   case $1 in
     RtlMachine.*) echo paper ;;
@@ -56,9 +58,9 @@ link() {
   (cd build && eval "${command/-o rtl\/$1/-o $2 $archives}")
 }
 
-# outcome FOLDER FILE FIND REPLACE TEST: prints it.
+# outcome FOLDER FILE FIND REPLACE TEST MODELS: prints it.
 outcome() {
-  local folder=$1 test=$5 binary model archives=() status=0
+  local folder=$1 test=$5 models=$6 binary model archives=() status=0
   rm -rf "$folder"
   mkdir -p "$folder/rtl"
   (cd rtl && cp --parents fasttree.f waivers.vlt ./*.sv ./*/*.sv "$folder/rtl")
@@ -71,7 +73,7 @@ if text.count(find) != 1:
 open(path, "w").write(text.replace(find, replace))
 PYTHON
   binary=$(binary_of "$test")
-  for model in $(models_of "$test"); do
+  for model in ${models:-$(models_of "$test")}; do
     local verilated=$folder/V$model arguments
     arguments=$(<"build/rtl/V$model.dir/verilator_args.txt")
     arguments=${arguments//--make;cmake;/}
@@ -98,12 +100,13 @@ PYTHON
   esac
 }
 
-# plant NUMBER ROW FILE FIND REPLACE TEST WHY: one fault, in the place of that number.
+# plant NUMBER ROW FILE FIND REPLACE TEST MODELS WHY: one fault, in the folder of that number.
 plant() {
   local begin=$SECONDS result
-  result=$(outcome "$work/$1" "${@:3:4}")
-  note "$(printf '%-12s %3d s  %-28s %s' "$result" $((SECONDS - begin)) "$3" "$7")"
-  echo "| \`$(basename "$3")\` | \`$6\` | $7 | $result |" >"$2"
+  result=$(outcome "$scratch/$1" "${@:3:5}")
+  note "$(printf '%-12s %3d s  %-28s %s' "$result" $((SECONDS - begin)) "$3" "$8")"
+  echo "| \`$(basename "$3")\` | \`$6\` | $8 | $result |" >"$2"
+  case $result in caught*) rm -rf "${scratch:?}/$1" ;; esac
 }
 
 binaries=(rtl_units_test)
@@ -113,12 +116,13 @@ for binary in "${binaries[@]}"; do
     fail "$binary does not build; see $work/build.log"
 done
 
-rm -f "$work"/*.row
 total=0
 places=$(build_jobs)
 for list in "${lists[@]}"; do
+  name=$(basename "$list" .txt)
+  rm -f "$work/$name".*.row
   number=0
-  file='' find='' replace='' test=''
+  file='' find='' replace='' test='' models=''
   while IFS= read -r line || [ -n "$line" ]; do
     case $line in
       'file: '*) file=${line#file: } ;;
@@ -126,22 +130,25 @@ for list in "${lists[@]}"; do
       'replace: '*) replace=${line#replace: } ;;
       'replace:') replace='' ;;
       'test: '*) test=${line#test: } ;;
+      'models: '*) models=${line#models: } ;;
       'why: '*)
         number=$((number + 1))
         [ "$number" -le "$first" ] || continue
         total=$((total + 1))
         if [ "$total" -gt "$places" ]; then wait -n; fi
-        row=$work/$(basename "$list" .txt).$(printf %02d "$number").row
-        plant "$total" "$row" "$file" "$find" "$replace" "$test" "${line#why: }" &
+        row=$work/$name.$(printf %02d "$number").row
+        plant "$total" "$row" "$file" "$find" "$replace" "$test" "$models" "${line#why: }" &
         ;;
     esac
   done <"$list"
 done
 wait
+caught=0
 for list in "${lists[@]}"; do
   name=$(basename "$list" .txt)
   cat "$work/$name".*.row >"$work/$name.md"
+  caught=$((caught + $(grep -c '| caught[^|]*|$' "$work/$name.md" || true)))
 done
-caught=$(cat "$work"/*.row | grep -c '| caught[^|]*|$' || true)
 say "$caught of $total caught"
-[ "$caught" -eq "$total" ]
+if [ "$caught" -ne "$total" ]; then fail "what is left of the others lies in $scratch"; fi
+rmdir "$scratch"
