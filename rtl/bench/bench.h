@@ -9,6 +9,10 @@
 #include <random>
 #include <string>
 
+#ifdef FASTTREE_RTL_COVERAGE
+#include "rtl/bench/coverage.h"
+#endif
+
 namespace fasttree::rtl {
 
 /// A verilated unit with its clock. Inputs are set between cycles; combinational outputs are looked
@@ -21,6 +25,9 @@ class Bench {
   }
   ~Bench() {
     unit.final();
+#ifdef FASTTREE_RTL_COVERAGE
+    add_coverage(context_);
+#endif
     // A model's destructor goes to the thread's context, which may be a later bench's.
     Verilated::threadContextp(&context_);
   }

@@ -233,6 +233,8 @@ TEST(RtlMachine, RefusesWhatDoesNotFit) {
   };
   has(refused([](ft_accel_order& o) { o.scene_bytes = 36 * 2000 - 1; }), "larger than its buffer");
   has(refused([](ft_accel_order& o) { o.triangles = 0xffffffff; }), "larger than its buffer");
+  // 36 bytes each, that is 32 more than 2^32.
+  has(refused([](ft_accel_order& o) { o.triangles = 119304648; }), "larger than its buffer");
   has(refused([](ft_accel_order& o) { o.reference_capacity = 2100; }), "more references than");
   has(refused([](ft_accel_order& o) { o.leaf_capacity = 100; }), "more leaves than");
   has(refused([](ft_accel_order& o) { o.window_begin = 64; }), "outside its window");

@@ -79,7 +79,6 @@ module ft_registers #(
       words[32*ft_pkg::OrderWatchdog+:32]  <= WATCHDOG;
     end else begin
       if (s_axi_bready) s_axi_bvalid <= 1'b0;
-      if (finished) done_seen <= 1'b1;
       if (write_now) begin
         s_axi_bvalid <= 1'b1;
         if (write_word == Control && s_axi_wstrb[0]) begin
@@ -95,6 +94,8 @@ module ft_registers #(
           end
         end
       end
+      // An end in the cycle of a clear counts: it may be the next build's.
+      if (finished) done_seen <= 1'b1;
     end
   end
 
