@@ -46,8 +46,11 @@ struct Registers {
       words[reg] = value;
     } else if (value == FT_ACCEL_START) {
       busy_reads = 3;
-      const std::uint32_t error = errors.empty() ? FT_ACCEL_OK : errors.front();
-      if (!errors.empty()) errors.erase(errors.begin());
+      std::uint32_t error = FT_ACCEL_OK;
+      if (!errors.empty()) {
+        error = errors.front();
+        errors.erase(errors.begin());
+      }
       words[FT_ACCEL_STATUS] = (error != FT_ACCEL_OK ? 4 : 2) | error << 8;
     }
   }

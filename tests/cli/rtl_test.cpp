@@ -182,8 +182,11 @@ TEST(CliDiff, AllThreeAreTheSame) {
     EXPECT_FALSE(array.contains("first_word"));
     EXPECT_NE(text.out.find(array["array"].get<std::string>()), std::string::npos);
     if (stages.empty() || stages.back() != array["stage"]) stages.push_back(array["stage"]);
-    if (array["stage"] == "radix_sort") EXPECT_EQ(array["words"], simulated["references"]);
-    if (array["stage"] == "leaf_node") EXPECT_EQ(array["words"], simulated["leaves"]);
+    if (array["stage"] == "radix_sort") {
+      EXPECT_EQ(array["words"], simulated["references"]);
+    } else if (array["stage"] == "leaf_node") {
+      EXPECT_EQ(array["words"], simulated["leaves"]);
+    }
   }
   EXPECT_EQ(stages,
             (std::vector<std::string>{"scene_bound", "morton_code", "radix_sort", "leaf_node",
