@@ -25,16 +25,12 @@ using report::paragraph;
 constexpr std::size_t kTornadoRows = 16;
 constexpr double kVisible = 0.05;  // per cent: less is not drawn
 
-/// The machines whose stages and bytes are worth a picture: the paper's two clocks have nearly the
-/// same, and the 28 nm version exactly.
-constexpr Machine kShown[] = {kFpga, kAsic65, kFastTree2};
-
 std::string cycles_plot(const Evaluation& evaluation) {
   std::vector<std::string> legend;
   std::vector<report::BarGroup> groups;
   for (const EvaluatedScene& scene : evaluation.scenes) {
     report::BarGroup group{scene.name, {}};
-    for (const Machine machine : kShown) {
+    for (const Machine machine : kTimedMachines) {
       const ExploredRun& run = scene.runs[machine];
       report::Bar bar{run.config, {}, fmt::format("{:.2f}", run.cycles_per_triangle)};
       for (const auto& [stage, cycles] : run.stages) {
