@@ -115,15 +115,19 @@ report::PageSection machines_section(const Evaluation& evaluation) {
 }
 
 report::PageSection stages_section(const Evaluation& evaluation) {
-  return {"stages", "Where the cycles go",
-          cycles_plot(evaluation) + report::html_table("Cycles and bytes by stage",
-                                                       stage_table(evaluation).cells(), {1, 2})};
+  return {
+      "stages", "Where the cycles go",
+      cycles_plot(evaluation) + "<details>\n<summary>Cycles and bytes by stage</summary>\n" +
+          report::html_table("Cycles and bytes by stage", stage_table(evaluation).cells(), {1, 2}) +
+          "</details>\n"};
 }
 
 report::PageSection bandwidth_section(const Evaluation& evaluation) {
   std::string body = paragraph(
-      "Bytes over the bus during a build. Thin lines are where one stage ends and the next begins. "
-      "The paper's machine is held back by its bus, fasttree-2 by the memory.");
+      "Bytes over the bus during a build, beside what memory and bus can move at most. Thin lines "
+      "are where one stage ends and the next begins. fasttree-2 counts bytes when the memory "
+      "accepts "
+      "a request: after a pause its queues fill faster than the peak, for a moment.");
   for (const EvaluatedScene& scene : evaluation.scenes) {
     body += "<h3>" + escaped_html(scene.name) + "</h3>\n<div class=\"pair\">\n";
     for (const Machine machine : {kAsic65, kFastTree2}) {

@@ -19,7 +19,7 @@ figure { margin: 1rem 0; min-width: 0; }
 figcaption { color: var(--soft); font-size: 0.85rem; margin-top: 0.4rem; max-width: 46rem; }
 img { display: block; max-width: 100%; height: auto; border-radius: 0.4rem; background: var(--card); }
 .gallery { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(18rem, 100%), 1fr)); gap: 0 1.2rem; }
-.pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(22rem, 100%), 1fr)); gap: 0 1.6rem; }
+.pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(22rem, 100%), 1fr)); gap: 0 1.6rem; align-items: end; }
 .pair > * { min-width: 0; }
 .scroll { margin: 0.8rem 0; }
 caption { text-align: left; color: var(--soft); padding-bottom: 0.3rem; }
@@ -47,8 +47,7 @@ path.middle { stroke: var(--soft); fill: none; vector-effect: non-scaling-stroke
   @page { margin: 14mm; }
   body { font-size: 10pt; max-width: none; padding: 0; }
   a { color: inherit; text-decoration: none; }
-  section { break-before: page; }
-  section.short, section:first-child { break-before: auto; }
+  #table1, #table3, #machines, #bandwidth, #assumptions, #method { break-before: page; }
   h2, h3, caption { break-after: avoid; }
   h2 { border-top: 0; margin-top: 0; }
   figure, tr, img, .tiles div { break-inside: avoid; }
