@@ -133,9 +133,8 @@ while read -r line; do complain "requested: $line"; done < <(requests)
 say "On paper, and as pictures"
 open_page "$page" --no-pdf-header-footer --print-to-pdf="$keep/report.pdf" || complain "printing failed"
 sheets=$(grep -aoE '/Type ?/Page\b' "$keep/report.pdf" | wc -l || true)
-sections=$(grep -c '^<section ' "$page")
-note "$sheets sheets of paper for $sections sections"
-[ "$sheets" -ge "$sections" ] || complain "fewer sheets than sections"
+note "$sheets sheets of paper"
+[ "$sheets" -ge 7 ] || complain "fewer sheets of paper than six breaks between them give"
 open_page "$page" --window-size=1280,4000 --screenshot="$keep/screen.png" || complain "no screenshot"
 # Windows are not as narrow as a phone; a frame is.
 printf '<!DOCTYPE html><body style="margin: 0"><iframe width="390" height="6000" src="%s"></iframe>' \

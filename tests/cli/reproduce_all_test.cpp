@@ -116,15 +116,13 @@ TEST(CliReproduceAll, PageJsonAndTablesAgreeAndStayTheSame) {
   }
 }
 
-TEST(CliReproduceAll, ASceneThatAMachineRefusesIsNamed) {
+TEST(CliReproduceAll, TooLittleMemoryIsFourAndLeavesNoPage) {
   const Folder folder;
-  const std::string scene = folder.path("t.obj"), out = folder.path("out");
-  write_file(scene, kTriangle);
-  // No memory for the simulation of any of them.
-  std::vector<std::string> arguments = quick(out, scene);
+  const std::string out = folder.path("out");
+  std::vector<std::string> arguments = quick(out, "scene:knot:400");
   arguments.insert(arguments.end(), {"--memory-limit", "1M"});
   EXPECT_EQ(run(arguments).exit_code, 4);
-  EXPECT_FALSE(fs::exists(out + "/report.html"));
+  EXPECT_TRUE(fs::is_empty(out));
 }
 
 TEST(CliReproduceAll, WrongUsageAndUnwritableFolders) {

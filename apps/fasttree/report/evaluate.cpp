@@ -50,7 +50,7 @@ FrameSplitSettings frame_settings(const EvaluationSettings& settings) {
   frame.repeat = 1;
   frame.picture_width = 320;
   frame.picture_height = 240;
-  frame.samples = 1;
+  frame.samples = 2;
   return frame;
 }
 

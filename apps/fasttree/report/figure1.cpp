@@ -10,7 +10,7 @@ std::vector<SplitRow> figure1_rows(const EvaluatedScene& scene) {
                     frame.layout_ms, frame.trace_ms});
   }
   const MeasuredFrame& paper = scene.frame.library.front();
-  for (const Machine machine : {kFpga, kAsic65, kFastTree2}) {
+  for (const Machine machine : kTimedMachines) {
     rows.push_back({scene.name, scene.runs[machine].config, true, scene.runs[machine].time_ms,
                     paper.layout_ms, paper.trace_ms});
   }

@@ -14,6 +14,8 @@
 namespace fasttree::app {
 namespace {
 
+constexpr std::uint32_t kOcclusionSamples = 4;
+
 /// Known scenes that are looked at from inside.
 bool is_room(const std::string& source) {
   const auto rooms = {"sibenik", "conference", "sponza"};
@@ -37,7 +39,7 @@ void draw(Context& context, const ExploredScene& scene, const live::Rebuild& bui
   render.height = split.picture_height = settings.picture_height;
   render.camera = camera;
   render.samples = settings.samples;
-  render.ao_samples = settings.samples;
+  render.ao_samples = kOcclusionSamples;
   render.memory_limit_bytes = settings.memory_bytes;
   render.progress = context.progress.callback("drawing " + scene.scene.mesh.name);
   split.png = take(render::encode_png(

@@ -25,16 +25,12 @@ using report::paragraph;
 constexpr std::size_t kTornadoRows = 16;
 constexpr double kVisible = 0.05;  // per cent: less is not drawn
 
-/// The machines whose stages and bytes are worth a picture: the paper's two clocks have nearly the
-/// same, and the 28 nm version exactly.
-constexpr Machine kShown[] = {kFpga, kAsic65, kFastTree2};
-
 std::string cycles_plot(const Evaluation& evaluation) {
   std::vector<std::string> legend;
   std::vector<report::BarGroup> groups;
   for (const EvaluatedScene& scene : evaluation.scenes) {
     report::BarGroup group{scene.name, {}};
-    for (const Machine machine : kShown) {
+    for (const Machine machine : kTimedMachines) {
       const ExploredRun& run = scene.runs[machine];
       report::Bar bar{run.config, {}, fmt::format("{:.2f}", run.cycles_per_triangle)};
       for (const auto& [stage, cycles] : run.stages) {
@@ -119,15 +115,19 @@ report::PageSection machines_section(const Evaluation& evaluation) {
 }
 
 report::PageSection stages_section(const Evaluation& evaluation) {
-  return {"stages", "Where the cycles go",
-          cycles_plot(evaluation) + report::html_table("Cycles and bytes by stage",
-                                                       stage_table(evaluation).cells(), {1, 2})};
+  return {
+      "stages", "Where the cycles go",
+      cycles_plot(evaluation) + "<details>\n<summary>Cycles and bytes by stage</summary>\n" +
+          report::html_table("Cycles and bytes by stage", stage_table(evaluation).cells(), {1, 2}) +
+          "</details>\n"};
 }
 
 report::PageSection bandwidth_section(const Evaluation& evaluation) {
   std::string body = paragraph(
-      "Bytes over the bus during a build. Thin lines are where one stage ends and the next begins. "
-      "The paper's machine is held back by its bus, fasttree-2 by the memory.");
+      "Bytes over the bus during a build, beside what memory and bus can move at most. Thin lines "
+      "are where one stage ends and the next begins. fasttree-2 counts bytes when the memory "
+      "accepts "
+      "a request: after a pause its queues fill faster than the peak, for a moment.");
   for (const EvaluatedScene& scene : evaluation.scenes) {
     body += "<h3>" + escaped_html(scene.name) + "</h3>\n<div class=\"pair\">\n";
     for (const Machine machine : {kAsic65, kFastTree2}) {

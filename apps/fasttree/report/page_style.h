@@ -19,13 +19,13 @@ figure { margin: 1rem 0; min-width: 0; }
 figcaption { color: var(--soft); font-size: 0.85rem; margin-top: 0.4rem; max-width: 46rem; }
 img { display: block; max-width: 100%; height: auto; border-radius: 0.4rem; background: var(--card); }
 .gallery { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(18rem, 100%), 1fr)); gap: 0 1.2rem; }
-.pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(22rem, 100%), 1fr)); gap: 0 1.6rem; }
+.pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(22rem, 100%), 1fr)); gap: 0 1.6rem; align-items: end; }
 .pair > * { min-width: 0; }
 .scroll { margin: 0.8rem 0; }
 caption { text-align: left; color: var(--soft); padding-bottom: 0.3rem; }
 thead th { border-bottom: 2px solid var(--line); vertical-align: bottom; }
 tbody th { color: var(--text); font-weight: 500; }
-th.words, td.words { text-align: left; white-space: normal; min-width: 14rem; }
+th.words, td.words { text-align: left; white-space: normal; min-width: 9rem; }
 tr[data-measured] > :first-child::after, .bar[data-measured] > :first-child::after { content: " \25F7"; color: var(--soft); }
 .bars { display: grid; gap: 0.25rem; font-size: 0.85rem; }
 .bar { display: grid; grid-template-columns: 12rem 1fr 10rem; gap: 0 0.7rem; align-items: center; break-inside: avoid; }
@@ -37,11 +37,9 @@ svg.strip { height: 1.1rem; border-radius: 0.15rem; }
 rect.less { fill: #009e73; } rect.more { fill: #d55e00; }
 path.middle { stroke: var(--soft); fill: none; vector-effect: non-scaling-stroke; }
 @media (max-width: 44rem) {
-  .bar, .tornado .bar { grid-template-columns: 1fr auto; }
+  .bar { grid-template-columns: 1fr 8.5rem; margin-bottom: 0.35rem; }
+  .tornado .bar { grid-template-columns: 1fr; margin-bottom: 0.6rem; }
   .bar > span:first-child { grid-column: 1 / -1; }
-  .tornado .bar > span:last-child { grid-column: 1 / -1; }
-  .tornado .bar > svg { grid-column: 1 / -1; }
-  .tornado .bar { margin-bottom: 0.4rem; }
 }
 @media print {
   :root { --page: #ffffff; --card: #f4f5f7; --text: #000000; --soft: #444444; --line: #bbbbbb; --busy: #0072b2; color-scheme: light; }
@@ -49,8 +47,7 @@ path.middle { stroke: var(--soft); fill: none; vector-effect: non-scaling-stroke
   @page { margin: 14mm; }
   body { font-size: 10pt; max-width: none; padding: 0; }
   a { color: inherit; text-decoration: none; }
-  section { break-before: page; }
-  section.short, section:first-child { break-before: auto; }
+  #table1, #table3, #machines, #bandwidth, #assumptions, #method { break-before: page; }
   h2, h3, caption { break-after: avoid; }
   h2 { border-top: 0; margin-top: 0; }
   figure, tr, img, .tiles div { break-inside: avoid; }

@@ -71,6 +71,7 @@ std::string stacked_bars(const std::vector<std::string>& legend, const std::stri
   for (const BarGroup& group : groups) most_of_all = std::max(most_of_all, longest(group));
   std::string text = "<p class=\"keys\">";
   for (std::size_t i = 0; i < legend.size(); ++i) {
+    if (legend[i].empty()) continue;
     text += "<span class=\"key\"><i class=\"" + model::stage_class(i) + "\"></i>" +
             escaped_html(legend[i]) + "</span>";
   }

@@ -28,8 +28,8 @@ struct BarGroup {
   std::vector<Bar> bars;
 };
 
-/// Parts end to end from the left. The longest bar fills the width: of its group, or of all groups
-/// where `one_scale` says so.
+/// Parts end to end from the left. Entries of the legend without a name are left out of it. The
+/// longest bar fills the width: of its group, or of all groups where `one_scale` says so.
 std::string stacked_bars(const std::vector<std::string>& legend, const std::string& unit,
                          const std::vector<BarGroup>& groups, bool one_scale);
 

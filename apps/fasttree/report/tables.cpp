@@ -70,7 +70,8 @@ Table machine_table(const Evaluation& evaluation) {
   Table table({"scene", "machine", "MHz", "cycles", "cycles/tri", "ms", "FPS", "times paper-asic65",
                "GB/s", "mm2 at 65 nm", "W", "machine uJ", "memory uJ", "tree"});
   for (const EvaluatedScene& scene : evaluation.scenes) {
-    for (const ExploredRun& run : scene.runs) {
+    for (const Machine machine : kTimedMachines) {
+      const ExploredRun& run = scene.runs[machine];
       table.row({scene.name, run.config, fmt::format("{:g}", run.account->clock_mhz),
                  with_commas(run.cycles), fmt::format("{:.2f}", run.cycles_per_triangle),
                  fmt::format("{:.3f}", run.time_ms), fmt::format("{:.1f}", 1000 / run.time_ms),
@@ -89,7 +90,8 @@ Table stage_table(const Evaluation& evaluation) {
                "bytes written/tri"});
   for (const EvaluatedScene& scene : evaluation.scenes) {
     const auto triangles = static_cast<double>(scene.triangles);
-    for (const ExploredRun& run : scene.runs) {
+    for (const Machine machine : kTimedMachines) {
+      const ExploredRun& run = scene.runs[machine];
       for (const model::StageRecord& stage : run.account->stages) {
         const auto cycles = static_cast<double>(model::cycles_of(stage));
         table.row(
@@ -108,7 +110,8 @@ Table stage_table(const Evaluation& evaluation) {
 Table bandwidth_table(const Evaluation& evaluation) {
   Table table({"scene", "machine", "from us", "to us", "GB/s"});
   for (const EvaluatedScene& scene : evaluation.scenes) {
-    for (const ExploredRun& run : scene.runs) {
+    for (const Machine machine : kTimedMachines) {
+      const ExploredRun& run = scene.runs[machine];
       const model::SimulationResult& account = *run.account;
       for (const model::TimelineSample& sample : account.timeline) {
         const auto us = [&](std::uint64_t cycle) {
