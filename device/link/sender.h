@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sending end of a stream: data frames within the window, again where they were lost.
+//
+// A frame is lost when frames that were sent some time after it have come, or when the timer runs
+// out. How many may be under way is what the receiver allows, and what the network is thought to
+// hold: doubled every round trip until frames get lost, then more by one a round trip and less by
+// three tenths with each loss.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "device/link/byte_source.h"
+#include "device/link/counts.h"
+#include "device/link/frame.h"
+#include "device/link/messages.h"
+#include "device/link/outbox.h"
+
+namespace fasttree::device {
+
+inline constexpr Micros kFirstTimeout = 100'000;
+inline constexpr Micros kLeastRetransmission = 10'000;
+inline constexpr Micros kMostRetransmission = 1'000'000;
+inline constexpr std::uint32_t kMostTries = 16;  ///< of a frame
+inline constexpr std::uint32_t kReorder = 4;     ///< frames sent later that may come before
+inline constexpr double kFirstFlight = 32;       ///< frames under way
+inline constexpr double kLeastFlight = 16;
+
+class Sender {
+ public:
+  /// `source` has to outlive the sender. Sends nothing before `limit` allows it (an ack does too).
+  /// Timers never wait longer than a quarter of `silence`, after which the session would end.
+  Sender(const ByteSource& source, std::uint32_t payload, std::uint32_t limit, Micros silence);
+
+  /// False for an ack that cannot be.
+  bool on_ack(const Frame& frame, Micros now);
+
+  /// Writes what is due. True where more is due than the outbox had room for.
+  bool poll(std::uint64_t session, const Peer& peer, Micros now, Outbox& out, LinkCounts& counts);
+  Micros next_event() const;
+
+  bool complete() const { return base_ == frames_; }
+  bool failed() const { return failed_; }  ///< a frame went unanswered too often
+  double fraction() const { return frames_ == 0 ? 1.0 : static_cast<double>(base_) / frames_; }
+
+ private:
+  enum class State : std::uint8_t { unsent, flying, lost, arrived };
+  struct Slot {
+    std::uint64_t order = 0;  ///< of its last transmission, among all
+    std::uint8_t tries = 0;
+    State state = State::unsent;
+  };
+
+  Slot& slot(std::uint32_t sequence) { return slots_[sequence % kMostWindow]; }
+  void arrive(std::uint32_t sequence);
+  void lose(std::uint32_t sequence);
+  void lose_overtaken(std::uint32_t end);
+  void time_out(Micros now, LinkCounts& counts);
+  void sample(Micros round_trip);
+  Micros timeout() const;
+  bool may_send_new() const;
+  void send(std::uint32_t sequence, std::uint64_t session, const Peer& peer, Micros now,
+            Outbox& out, LinkCounts& counts);
+
+  const ByteSource& source_;
+  std::uint64_t bytes_;
+  std::uint32_t payload_;
+  std::uint32_t frames_;
+  Micros most_wait_;
+  std::uint32_t base_ = 0;       ///< first frame that has not arrived
+  std::uint32_t next_ = 0;       ///< first that was never sent
+  std::uint32_t limit_;          ///< first that the receiver does not take
+  std::uint32_t lost_ = 0;       ///< how many are
+  std::uint32_t lost_from_ = 0;  ///< none is before
+  std::uint32_t flying_ = 0;
+  std::uint64_t sent_ = 0;            ///< transmissions
+  std::uint64_t newest_arrived_ = 0;  ///< the last transmission known to have arrived
+  std::uint32_t recovery_ = 0;        ///< losses before this frame have been answered
+  double flight_ = kFirstFlight;      ///< frames that may be under way
+  bool slow_start_ = true;
+  Micros smooth_ = 0, variation_ = 0;  ///< of the round trip; 0: not measured
+  std::uint32_t backed_off_ = 0;
+  Micros deadline_ = kNever;
+  bool failed_ = false;
+  std::array<Slot, kMostWindow> slots_{};
+};
+
+}  // namespace fasttree::device
