@@ -49,7 +49,6 @@ bool Sender::on_ack(const Frame& frame, Micros now) {
     }
     slot(base_) = Slot();
   }
-  std::uint32_t end = base_;
   for (std::size_t word = 0; word < (bytes - kLeastAckBytes) / 4; ++word) {
     auto bits = get<std::uint32_t>(frame.body, kLeastAckBytes + 4 * word);
     // Frame `sequence` itself has not come. Were it so, no timer would bring an answer about.
@@ -58,7 +57,6 @@ bool Sender::on_ack(const Frame& frame, Micros now) {
          bits >>= 1, ++s) {
       if ((bits & 1) == 0) continue;
       if (s >= next_) return false;
-      end = s + 1;
       if (slot(s).state == State::arrived) continue;
       arrive(s);
       ++arrived;
@@ -72,14 +70,21 @@ bool Sender::on_ack(const Frame& frame, Micros now) {
     flight_ += slow_start_ ? arrived : arrived / flight_;
     flight_ = std::min(flight_, static_cast<double>(kMostWindow));
   }
-  lose_overtaken(end);
+  lose_overtaken(now);
   if (arrived > 0) deadline_ = flying_ + lost_ > 0 ? now + timeout() : kNever;
   return true;
 }
 
-void Sender::lose_overtaken(std::uint32_t end) {
-  for (std::uint32_t s = base_; s < end; ++s) {
-    if (slot(s).state != State::flying || slot(s).order + kReorder >= newest_arrived_) continue;
+void Sender::lose_overtaken(Micros now) {
+  overtaken_ = kNever;
+  const Micros patience = smooth_ + std::max(smooth_ / 4, variation_);
+  for (std::uint32_t s = base_; s < next_; ++s) {
+    const Slot& frame = slot(s);
+    if (frame.state != State::flying || frame.order > newest_arrived_) continue;
+    if (now < frame.sent + patience) {
+      overtaken_ = std::min(overtaken_, frame.sent + patience);
+      continue;
+    }
     lose(s);
     if (s < recovery_) continue;
     // Once for all that were under way together.
@@ -117,6 +122,7 @@ void Sender::time_out(Micros now, LinkCounts& counts) {
   slow_start_ = false;
   flight_ = kLeastFlight;
   deadline_ = now + timeout();
+  overtaken_ = kNever;
 }
 
 bool Sender::may_send_new() const {
@@ -127,6 +133,7 @@ bool Sender::poll(std::uint64_t session, const Peer& peer, Micros now, Outbox& o
                   LinkCounts& counts) {
   if (failed_) return false;
   if (now >= deadline_) time_out(now, counts);
+  if (now >= overtaken_) lose_overtaken(now);
   while (flying_ < flight_ && (lost_ > 0 || may_send_new())) {
     if (!out.has_room(payload_)) return true;
     std::uint32_t sequence = next_;
@@ -154,6 +161,7 @@ void Sender::send(std::uint32_t sequence, std::uint64_t session, const Peer& pee
   }
   s.state = State::flying;
   s.order = ++sent_;
+  s.sent = now;
   ++s.tries;
   ++flying_;
   const std::uint64_t offset = std::uint64_t{sequence} * payload_;
@@ -172,7 +180,7 @@ void Sender::send(std::uint32_t sequence, std::uint64_t session, const Peer& pee
 Micros Sender::next_event() const {
   if (failed_) return 0;
   if (flying_ < flight_ && (lost_ > 0 || may_send_new())) return 0;
-  return deadline_;
+  return std::min(deadline_, overtaken_);
 }
 
 }  // namespace fasttree::device

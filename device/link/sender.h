@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sending end of a stream: data frames within the window, again where they were lost.
 //
-// A frame is lost when frames that were sent some time after it have come, or when the timer runs
-// out. How many may be under way is what the receiver allows, and what the network is thought to
-// hold: doubled every round trip until frames get lost, then more by one a round trip and less by
-// three tenths with each loss.
+// A frame is taken for lost when one that was sent later has come and it has not, a round trip and
+// a bit after it was sent; or when the timer runs out. How many may be under way is what the
+// receiver allows, and what the network is thought to hold: doubled every round trip until frames
+// get lost, then more by one a round trip and less by three tenths with each loss.
 #pragma once
 
 #include <array>
@@ -23,7 +23,6 @@ inline constexpr Micros kFirstTimeout = 100'000;
 inline constexpr Micros kLeastRetransmission = 10'000;
 inline constexpr Micros kMostRetransmission = 1'000'000;
 inline constexpr std::uint32_t kMostTries = 16;  ///< of a frame
-inline constexpr std::uint32_t kReorder = 4;     ///< frames sent later that may come before
 inline constexpr double kFirstFlight = 32;       ///< frames under way
 inline constexpr double kLeastFlight = 16;
 
@@ -48,6 +47,7 @@ class Sender {
   enum class State : std::uint8_t { unsent, flying, lost, arrived };
   struct Slot {
     std::uint64_t order = 0;  ///< of its last transmission, among all
+    Micros sent = 0;
     std::uint8_t tries = 0;
     State state = State::unsent;
   };
@@ -55,7 +55,7 @@ class Sender {
   Slot& slot(std::uint32_t sequence) { return slots_[sequence % kMostWindow]; }
   void arrive(std::uint32_t sequence);
   void lose(std::uint32_t sequence);
-  void lose_overtaken(std::uint32_t end);
+  void lose_overtaken(Micros now);
   void time_out(Micros now, LinkCounts& counts);
   void sample(Micros round_trip);
   Micros timeout() const;
@@ -81,7 +81,8 @@ class Sender {
   bool slow_start_ = true;
   Micros smooth_ = 0, variation_ = 0;  ///< of the round trip; 0: not measured
   std::uint32_t backed_off_ = 0;
-  Micros deadline_ = kNever;
+  Micros deadline_ = kNever;   ///< the timer
+  Micros overtaken_ = kNever;  ///< when the next frame is taken for lost
   bool failed_ = false;
   std::array<Slot, kMostWindow> slots_{};
 };

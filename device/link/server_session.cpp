@@ -66,7 +66,8 @@ void ServerSession::on_datagram(std::span<const std::byte> datagram, const Peer&
       if (state_ != State::idle && session == session_ && from == peer_) {
         return on_frame_of_session(frame, now);
       }
-      ++counts_.wrong_session;
+      // Saying goodbye twice is in order: the answer may have been lost.
+      if (frame.header.type != FrameType::close || !was_here(session)) ++counts_.wrong_session;
       // Whoever holds the current session's number from another address gets no answer.
       if (state_ == State::idle || session != session_) {
         reply({FrameType::reset, session, from, {}});
@@ -82,8 +83,10 @@ void ServerSession::on_hello(const Frame& frame, const Peer& from, Micros now) {
   if (state_ != State::idle && session == session_) {
     if (from != peer_) {
       ++counts_.wrong_session;
-    } else if (state_ == State::receiving) {
+    } else if (state_ == State::receiving || !heard_more_) {
+      // The accept got lost. (A scene without triangles is complete before it is accepted.)
       owes_accept_ = true;
+      heard_ = now;
     }
     return;
   }
