@@ -2,7 +2,6 @@
 #include "device/link/sender.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "device/link/receiver.h"
 #include "device/link/wire.h"
@@ -14,7 +13,7 @@ Sender::Sender(const ByteSource& source, std::uint32_t payload, std::uint32_t li
       bytes_(source.size()),
       payload_(payload),
       frames_(static_cast<std::uint32_t>(frame_count(bytes_, payload))),
-      most_wait_(std::min(silence / 4, kMostRetransmission)),
+      most_wait_(std::min(silence / 4, kMostTimeout)),
       limit_(limit) {}
 
 void Sender::arrive(std::uint32_t sequence) {
@@ -65,19 +64,51 @@ bool Sender::on_ack(const Frame& frame, Micros now) {
   limit_ = std::max(limit_, limit);
   lost_from_ = std::max(lost_from_, base_);
   if (arrived > 0) {
-    sample(static_cast<std::uint32_t>(now) - frame.header.timestamp);
+    if (timed_out_ != kNever) undo_time_out(frame);
+    round_trip_.sample(static_cast<std::uint32_t>(now) - frame.header.timestamp);
     backed_off_ = 0;
-    flight_ += slow_start_ ? arrived : arrived / flight_;
-    flight_ = std::min(flight_, static_cast<double>(kMostWindow));
+    flight_.arrived(arrived);
   }
   lose_overtaken(now);
-  if (arrived > 0) deadline_ = flying_ + lost_ > 0 ? now + timeout() : kNever;
+  if (arrived > 0) set_timers(now);
   return true;
+}
+
+void Sender::set_timers(Micros now) {
+  const bool waits = flying_ + lost_ > 0;
+  deadline_ = waits ? now + timeout() : kNever;
+  probe_ = waits ? now + round_trip_.probe() : kNever;
+  probes_ = 0;
+}
+
+// The first answer after the timer ran out: to something that was sent before?
+void Sender::undo_time_out(const Frame& frame) {
+  const auto before = static_cast<std::uint32_t>(timed_out_) - frame.header.timestamp;
+  timed_out_ = kNever;
+  if (static_cast<std::int32_t>(before) <= 0) return;
+  flight_.none_lost();
+  for (std::uint32_t s = base_; s < next_; ++s) {
+    if (slot(s).state == State::lost) slot(s).state = State::flying;
+  }
+  flying_ += lost_;
+  lost_ = 0;
+}
+
+// The oldest frame under way goes out again, and again, ever more rarely.
+void Sender::probe(Micros now) {
+  ++probes_;
+  probe_ = now + (round_trip_.probe() << std::min(probes_, 10u));
+  if (lost_ > 0) return;
+  for (std::uint32_t s = base_; s < next_; ++s) {
+    if (slot(s).state != State::flying) continue;
+    if (slot(s).sent < now) lose(s);
+    return;
+  }
 }
 
 void Sender::lose_overtaken(Micros now) {
   overtaken_ = kNever;
-  const Micros patience = smooth_ + std::max(smooth_ / 4, variation_);
+  const Micros patience = round_trip_.patience();
   for (std::uint32_t s = base_; s < next_; ++s) {
     const Slot& frame = slot(s);
     if (frame.state != State::flying || frame.order > newest_arrived_) continue;
@@ -89,27 +120,12 @@ void Sender::lose_overtaken(Micros now) {
     if (s < recovery_) continue;
     // Once for all that were under way together.
     recovery_ = next_;
-    slow_start_ = false;
-    flight_ = std::max(flight_ * 0.7, kLeastFlight);
+    flight_.some_lost();
   }
-}
-
-void Sender::sample(Micros round_trip) {
-  round_trip = std::min(round_trip, kMostRetransmission);
-  if (smooth_ == 0) {
-    smooth_ = std::max<Micros>(round_trip, 1);
-    variation_ = round_trip / 2;
-    return;
-  }
-  const Micros off = round_trip > smooth_ ? round_trip - smooth_ : smooth_ - round_trip;
-  variation_ = (3 * variation_ + off) / 4;
-  smooth_ = std::max<Micros>((7 * smooth_ + round_trip) / 8, 1);
 }
 
 Micros Sender::timeout() const {
-  const Micros first = smooth_ == 0 ? kFirstTimeout : smooth_ + 4 * variation_;
-  const Micros once = std::clamp(first, kLeastRetransmission, kMostRetransmission);
-  return std::min(once << std::min(backed_off_, 10u), most_wait_);
+  return std::min(round_trip_.timeout() << std::min(backed_off_, 10u), most_wait_);
 }
 
 void Sender::time_out(Micros now, LinkCounts& counts) {
@@ -119,8 +135,9 @@ void Sender::time_out(Micros now, LinkCounts& counts) {
     if (slot(s).state == State::flying) lose(s);
   }
   recovery_ = next_;
-  slow_start_ = false;
-  flight_ = kLeastFlight;
+  if (backed_off_ == 1) flight_.all_lost();
+  timed_out_ = now;
+  probe_ = kNever;
   deadline_ = now + timeout();
   overtaken_ = kNever;
 }
@@ -134,7 +151,8 @@ bool Sender::poll(std::uint64_t session, const Peer& peer, Micros now, Outbox& o
   if (failed_) return false;
   if (now >= deadline_) time_out(now, counts);
   if (now >= overtaken_) lose_overtaken(now);
-  while (flying_ < flight_ && (lost_ > 0 || may_send_new())) {
+  if (now >= probe_) probe(now);
+  while (flying_ < flight_.frames() && (lost_ > 0 || may_send_new())) {
     if (!out.has_room(payload_)) return true;
     std::uint32_t sequence = next_;
     if (lost_ > 0) {
@@ -174,13 +192,13 @@ void Sender::send(std::uint32_t sequence, std::uint64_t session, const Peer& pee
   header.timestamp = static_cast<std::uint32_t>(now);
   out.commit(header, bytes, peer);
   counts.data_bytes_sent += bytes;
-  if (deadline_ == kNever) deadline_ = now + timeout();
+  if (deadline_ == kNever) set_timers(now);
 }
 
 Micros Sender::next_event() const {
   if (failed_) return 0;
-  if (flying_ < flight_ && (lost_ > 0 || may_send_new())) return 0;
-  return std::min(deadline_, overtaken_);
+  if (flying_ < flight_.frames() && (lost_ > 0 || may_send_new())) return 0;
+  return std::min({deadline_, overtaken_, probe_});
 }
 
 }  // namespace fasttree::device

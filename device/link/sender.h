@@ -2,9 +2,8 @@
 // The sending end of a stream: data frames within the window, again where they were lost.
 //
 // A frame is taken for lost when one that was sent later has come and it has not, a round trip and
-// a bit after it was sent; or when the timer runs out. How many may be under way is what the
-// receiver allows, and what the network is thought to hold: doubled every round trip until frames
-// get lost, then more by one a round trip and less by three tenths with each loss.
+// a bit after it was sent; or when the timer runs out, unless an answer then shows that it was only
+// late. Before the timer runs out one frame is sent again: the answer to it may have got lost.
 #pragma once
 
 #include <array>
@@ -13,18 +12,15 @@
 
 #include "device/link/byte_source.h"
 #include "device/link/counts.h"
+#include "device/link/flight.h"
 #include "device/link/frame.h"
 #include "device/link/messages.h"
 #include "device/link/outbox.h"
+#include "device/link/round_trip.h"
 
 namespace fasttree::device {
 
-inline constexpr Micros kFirstTimeout = 100'000;
-inline constexpr Micros kLeastRetransmission = 10'000;
-inline constexpr Micros kMostRetransmission = 1'000'000;
 inline constexpr std::uint32_t kMostTries = 16;  ///< of a frame
-inline constexpr double kFirstFlight = 32;       ///< frames under way
-inline constexpr double kLeastFlight = 16;
 
 class Sender {
  public:
@@ -57,7 +53,9 @@ class Sender {
   void lose(std::uint32_t sequence);
   void lose_overtaken(Micros now);
   void time_out(Micros now, LinkCounts& counts);
-  void sample(Micros round_trip);
+  void probe(Micros now);
+  void undo_time_out(const Frame& frame);
+  void set_timers(Micros now);
   Micros timeout() const;
   bool may_send_new() const;
   void send(std::uint32_t sequence, std::uint64_t session, const Peer& peer, Micros now,
@@ -77,11 +75,13 @@ class Sender {
   std::uint64_t sent_ = 0;            ///< transmissions
   std::uint64_t newest_arrived_ = 0;  ///< the last transmission known to have arrived
   std::uint32_t recovery_ = 0;        ///< losses before this frame have been answered
-  double flight_ = kFirstFlight;      ///< frames that may be under way
-  bool slow_start_ = true;
-  Micros smooth_ = 0, variation_ = 0;  ///< of the round trip; 0: not measured
+  Flight flight_;
+  RoundTrip round_trip_;
   std::uint32_t backed_off_ = 0;
-  Micros deadline_ = kNever;   ///< the timer
+  Micros deadline_ = kNever;  ///< the timer
+  Micros probe_ = kNever;     ///< when one frame is sent again
+  std::uint32_t probes_ = 0;
+  Micros timed_out_ = kNever;  ///< when the timer ran out, until it is known whether rightly
   Micros overtaken_ = kNever;  ///< when the next frame is taken for lost
   bool failed_ = false;
   std::array<Slot, kMostWindow> slots_{};

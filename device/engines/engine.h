@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who builds in this process: the library, the cycle-level model of a machine, or its RTL.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "device/order.h"
+#include "fasttree/build.h"
+#include "fasttree/mesh.h"
+#include "fasttree/status.h"
+#include "model/config/machine_config.h"
+
+namespace fasttree::device {
+
+struct Engine {
+  std::string name;
+  std::string config;  ///< of a machine
+  /// Builds on the calling thread, and on those of its task arena.
+  std::function<Result<Outcome>(const MeshView&, const Order&, const ProgressCallback&)> build;
+};
+
+/// Follows the order. Keeps its working memory from build to build.
+Engine library_engine();
+
+// Machines follow their configuration, and take only its memory from the order.
+Engine model_engine(const model::MachineConfig& config);
+/// Where there is no Verilator, builds end with invalid_argument.
+Engine rtl_engine(const model::MachineConfig& config);
+
+/// "library", "model" or "rtl", with a configuration's name or file for the latter two. bad_input,
+/// io_error: the configuration; invalid_argument: another name, or a configuration for the library.
+Result<Engine> make_engine(const std::string& name, const std::string& config);
+
+}  // namespace fasttree::device
