@@ -68,6 +68,11 @@ void Server::run_engine(Micros now) {
   session_.engine_ended(status->ok() ? device_->read_result() : Result<Outcome>(*status), now);
 }
 
+std::optional<BuildProgress> Server::progress() const {
+  if (!building_) return std::nullopt;
+  return device_->progress();
+}
+
 bool Server::take_in() {
   return port_.receive([&](std::span<const std::byte> datagram, const Peer& from) {
     session_.on_datagram(datagram, from, micros_now());

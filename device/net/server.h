@@ -39,6 +39,9 @@ class Server {
   /// that has ended.
   void run(const std::function<bool()>& go_on, const std::function<void(const SessionEnd&)>& ended);
 
+  /// Of the build that runs.
+  std::optional<BuildProgress> progress() const;
+
   const LinkCounts& counts() const { return session_.counts(); }
 
  private:
