@@ -56,7 +56,7 @@ void ClientSession::on_datagram(std::span<const std::byte> datagram, const Peer&
   heard_any_ = true;
   switch (frame.header.type) {
     case FrameType::accept:
-      return on_accept(frame);
+      return on_accept(frame, now);
     case FrameType::refuse:
       return on_refuse(frame, now);
     case FrameType::ack:
@@ -88,7 +88,7 @@ void ClientSession::on_datagram(std::span<const std::byte> datagram, const Peer&
   }
 }
 
-void ClientSession::on_accept(const Frame& frame) {
+void ClientSession::on_accept(const Frame& frame, Micros now) {
   if (state_ != State::greeting) return;
   const auto accept = read_accept(frame.body);
   if (!accept || accept->payload > settings_.payload) {
@@ -100,6 +100,7 @@ void ClientSession::on_accept(const Frame& frame) {
   repeat_.stop();
   state_ = State::sending;
   sender_.emplace(scene_, accept_.payload, accept_.window, silence());
+  sender_->know_round_trip(static_cast<std::uint32_t>(now) - frame.header.timestamp);
   if (sender_->complete()) scene_is_there();
 }
 
@@ -175,7 +176,7 @@ void ClientSession::on_offer(const Frame& frame, Micros now) {
   }
   result_ = std::move(memory);
   receiver_.emplace(result_.bytes(), accept_.payload, settings_.window);
-  receiver_->owe_ack();
+  receiver_->owe_ack(frame.header.timestamp);
   state_ = State::receiving;
 }
 
@@ -250,11 +251,13 @@ void ClientSession::check_silence(Micros now) {
                       "; is it still running, and the network up?"));
 }
 
-void ClientSession::write(FrameType type, std::uint32_t sequence, std::size_t bytes, Outbox& out) {
+void ClientSession::write(FrameType type, std::uint32_t sequence, std::size_t bytes, Outbox& out,
+                          Micros now) {
   FrameHeader header;
   header.type = type;
   header.session = session_;
   header.sequence = sequence;
+  header.timestamp = static_cast<std::uint32_t>(now);
   out.commit(header, bytes, server_);
 }
 
@@ -272,7 +275,7 @@ bool ClientSession::poll(Micros now, Outbox& out) {
     hello.timeout_ms = timeout_ms_;
     hello.order = order_;
     write_hello(hello, out.body(kHelloBytes));
-    write(FrameType::hello, 0, kHelloBytes, out);
+    write(FrameType::hello, 0, kHelloBytes, out, now);
     repeat_.done(now);
   }
   if (state_ == State::sending) more = sender_->poll(session_, server_, now, out, counts_);

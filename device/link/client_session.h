@@ -59,7 +59,7 @@ class ClientSession {
  private:
   enum class State { greeting, sending, building, receiving, closing, ended };
 
-  void on_accept(const Frame& frame);
+  void on_accept(const Frame& frame, Micros now);
   void on_refuse(const Frame& frame, Micros now);
   void on_progress(const Frame& frame, Micros now);
   void on_offer(const Frame& frame, Micros now);
@@ -70,7 +70,8 @@ class ClientSession {
   void end(Status status);
   void check_silence(Micros now);
   Micros silence() const { return Micros{timeout_ms_} * 1000; }
-  void write(FrameType type, std::uint32_t sequence, std::size_t bytes, Outbox& out);
+  void write(FrameType type, std::uint32_t sequence, std::size_t bytes, Outbox& out,
+             Micros now = 0);
 
   ClientSettings settings_;
   std::uint64_t session_;

@@ -3,6 +3,7 @@
 // together. And where they go to.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -50,6 +51,15 @@ class Outbox {
     finish_frame(header, {memory_.get() + used_, bytes});
     entries_.push_back({used_, bytes, peer});
     used_ += bytes;
+  }
+
+  /// A datagram as it is, whatever it is. False where there is no room.
+  bool add(std::span<const std::byte> datagram, const Peer& peer) {
+    if (used_ + datagram.size() > kCapacity) return false;
+    std::copy(datagram.begin(), datagram.end(), memory_.get() + used_);
+    entries_.push_back({used_, datagram.size(), peer});
+    used_ += datagram.size();
+    return true;
   }
 
   std::span<const Entry> entries() const { return entries_; }

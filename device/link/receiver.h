@@ -33,6 +33,11 @@ class Receiver {
 
   bool owes_ack() const { return owes_ack_; }
   void owe_ack() { owes_ack_ = true; }
+  /// The ack answers something else than data, of this timestamp.
+  void owe_ack(std::uint32_t timestamp) {
+    owes_ack_ = true;
+    echo_ = timestamp;
+  }
   /// Only where the outbox has room for the longest ack.
   void write_ack(std::uint64_t session, const Peer& peer, Outbox& out);
 

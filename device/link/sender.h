@@ -31,6 +31,9 @@ class Sender {
   /// False for an ack that cannot be.
   bool on_ack(const Frame& frame, Micros now);
 
+  /// A round trip that was measured before the stream began.
+  void know_round_trip(Micros time) { round_trip_.sample(time); }
+
   /// Writes what is due. True where more is due than the outbox had room for.
   bool poll(std::uint64_t session, const Peer& peer, Micros now, Outbox& out, LinkCounts& counts);
   Micros next_event() const;

@@ -86,6 +86,7 @@ void ServerSession::on_hello(const Frame& frame, const Peer& from, Micros now) {
     } else if (state_ == State::receiving || !heard_more_) {
       // The accept got lost. (A scene without triangles is complete before it is accepted.)
       owes_accept_ = true;
+      hello_timestamp_ = frame.header.timestamp;
       heard_ = now;
     }
     return;
@@ -109,6 +110,7 @@ void ServerSession::on_hello(const Frame& frame, const Peer& from, Micros now) {
   if (hello->scene_bytes > most) {
     return reply({FrameType::refuse, session, from, {Refusal::scene_too_large, most}});
   }
+  hello_timestamp_ = frame.header.timestamp;
   begin(*hello, session, from, now);
 }
 
@@ -175,6 +177,9 @@ void ServerSession::on_ack(const Frame& frame, Micros now) {
   if (!sender_->on_ack(frame, now)) {
     ++counts_.bad_content;
     return;
+  }
+  if (state_ == State::offering) {
+    sender_->know_round_trip(static_cast<std::uint32_t>(now) - frame.header.timestamp);
   }
   state_ = State::sending;
   repeat_.stop();
@@ -268,11 +273,13 @@ void ServerSession::check_silence(Micros now) {
        "nothing was heard from the client for " + std::to_string(limit / 1000) + " ms"});
 }
 
-void ServerSession::write(FrameType type, std::uint32_t sequence, std::size_t bytes, Outbox& out) {
+void ServerSession::write(FrameType type, std::uint32_t sequence, std::size_t bytes, Outbox& out,
+                          std::uint32_t timestamp) {
   FrameHeader header;
   header.type = type;
   header.session = session_;
   header.sequence = sequence;
+  header.timestamp = timestamp;
   out.commit(header, bytes, peer_);
 }
 
@@ -307,7 +314,7 @@ bool ServerSession::poll(Micros now, Outbox& out) {
   if (!out.has_room(kMostAckBytes + kMostMessageBytes)) return true;
   if (state_ != State::idle && owes_accept_) {
     write_accept(accept_, out.body(kAcceptBytes));
-    write(FrameType::accept, 0, kAcceptBytes, out);
+    write(FrameType::accept, 0, kAcceptBytes, out, hello_timestamp_);
     owes_accept_ = false;
   }
   if (receiver_ && receiver_->owes_ack()) receiver_->write_ack(session_, peer_, out);
@@ -317,7 +324,7 @@ bool ServerSession::poll(Micros now, Outbox& out) {
       write(FrameType::progress, ++progress_sequence_, kProgressBytes, out);
     } else if (state_ == State::offering) {
       write_offer(result_->size(), out.body(kOfferBytes));
-      write(FrameType::offer, 0, kOfferBytes, out);
+      write(FrameType::offer, 0, kOfferBytes, out, static_cast<std::uint32_t>(now));
     } else if (state_ == State::faulting) {
       const std::size_t bytes = fault_bytes(fault_);
       write_fault(fault_, out.body(bytes));

@@ -95,7 +95,8 @@ class ServerSession {
   void check_silence(Micros now);
   void reply(const Reply& reply);
   bool write_replies(Outbox& out);
-  void write(FrameType type, std::uint32_t sequence, std::size_t bytes, Outbox& out);
+  void write(FrameType type, std::uint32_t sequence, std::size_t bytes, Outbox& out,
+             std::uint32_t timestamp = 0);
   bool was_here(std::uint64_t session) const;
   Micros silence() const;
 
@@ -119,6 +120,7 @@ class ServerSession {
   Micros heard_ = 0;
   bool heard_more_ = false;  ///< than its hello
   bool owes_accept_ = false;
+  std::uint32_t hello_timestamp_ = 0;
   StreamMemory scene_;
   std::optional<Receiver> receiver_;
   BuildProgress progress_;

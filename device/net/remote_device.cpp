@@ -12,7 +12,8 @@
 namespace fasttree::device {
 namespace {
 
-constexpr Micros kLook = 50'000;  // for cancelling and progress
+constexpr Micros kLook = 50'000;            // for cancelling and progress
+constexpr std::uint32_t kUnreachables = 3;  // then nobody is taken to be there
 constexpr Micros kDescribeWait = 50'000, kMostDescribeWait = 500'000;
 
 }  // namespace
@@ -37,7 +38,8 @@ Result<Description> RemoteDevice::describe() {
   Micros now = micros_now();
   ask.start(now, kDescribeWait, kMostDescribeWait);
   const Micros until = now + Micros{settings_.timeout_ms} * 1000;
-  for (; !answer && now < until; now = micros_now()) {
+  std::uint32_t unreachable = 0;
+  for (; !answer && now < until && unreachable < kUnreachables; now = micros_now()) {
     if (ask.due(now)) {
       out.clear();
       const Body body = out.body(kDescriptionBytes);
@@ -54,8 +56,13 @@ Result<Description> RemoteDevice::describe() {
         answer = read_description(frame.body);
       }
     });
+    if (port.was_unreachable()) ++unreachable;
   }
   if (answer) return *answer;
+  if (unreachable >= kUnreachables) {
+    return at_device({StatusCode::io_error,
+                      "nothing listens there; is fasttree serve running, and at this port?"});
+  }
   return at_device({StatusCode::io_error,
                     "does not say what it is; is fasttree serve running there, and does UDP get "
                     "through?"});
