@@ -20,8 +20,8 @@ static_assert(kProgram + kProgramSize == kDescriptionBytes);
 namespace hello_at {
 constexpr std::size_t kSceneBytes = 0, kMostResultBytes = 8, kPayload = 16, kWindow = 20,
                       kTimeout = 24, kProfile = 28, kAxes = 29, kDepth = 30, kImplementation = 31,
-                      kSimd = 32, kReserved = 33, kExtraDepth = 36, kMaxGrowth = 40,
-                      kMemoryLimit = 48, kTraversal = 56, kIntersection = 64, kTail = 72;
+                      kSimd = 32, kExtraDepth = 36, kMaxGrowth = 40, kMemoryLimit = 48,
+                      kTraversal = 56, kIntersection = 64, kTail = 72;
 static_assert(kTail <= kHelloBytes);
 }  // namespace hello_at
 

@@ -34,7 +34,7 @@ class Outbox {
 
   static constexpr std::size_t kCapacity = std::size_t{512} << 10;
 
-  Outbox() : memory_(std::make_unique<std::byte[]>(kCapacity)) {}
+  Outbox() : memory_(std::make_unique_for_overwrite<std::byte[]>(kCapacity)) {}
 
   bool has_room(std::size_t body_bytes) const {
     return used_ + kFrameOverhead + body_bytes <= kCapacity;
