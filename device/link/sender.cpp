@@ -16,12 +16,14 @@ Sender::Sender(const ByteSource& source, std::uint32_t payload, std::uint32_t li
       most_wait_(std::min(silence / 4, kMostTimeout)),
       limit_(limit) {}
 
-void Sender::arrive(std::uint32_t sequence) {
+void Sender::arrive(std::uint32_t sequence, std::uint32_t echo) {
   Slot& s = slot(sequence);
   if (s.state == State::flying) --flying_;
   if (s.state == State::lost) --lost_;
   s.state = State::arrived;
-  newest_arrived_ = std::max(newest_arrived_, s.order);
+  // An answer to something older is one to an earlier transmission, which has overtaken nobody.
+  const auto since = static_cast<std::int32_t>(echo - static_cast<std::uint32_t>(s.sent));
+  if (s.tries == 1 || since >= 0) newest_arrived_ = std::max(newest_arrived_, s.order);
 }
 
 void Sender::lose(std::uint32_t sequence) {
@@ -43,7 +45,7 @@ bool Sender::on_ack(const Frame& frame, Micros now) {
   std::uint32_t arrived = 0;
   for (; base_ < sequence; ++base_) {
     if (slot(base_).state != State::arrived) {
-      arrive(base_);
+      arrive(base_, frame.header.timestamp);
       ++arrived;
     }
     slot(base_) = Slot();
@@ -57,7 +59,7 @@ bool Sender::on_ack(const Frame& frame, Micros now) {
       if ((bits & 1) == 0) continue;
       if (s >= next_) return false;
       if (slot(s).state == State::arrived) continue;
-      arrive(s);
+      arrive(s, frame.header.timestamp);
       ++arrived;
     }
   }
@@ -94,7 +96,7 @@ void Sender::undo_time_out(const Frame& frame) {
   lost_ = 0;
 }
 
-// The oldest frame under way goes out again, and again, ever more rarely.
+// One frame goes out, however many are under way: a lost one, or else the oldest. Ever more rarely.
 void Sender::probe(Micros now) {
   ++probes_;
   probe_ = now + (round_trip_.probe() << std::min(probes_, 10u));
@@ -151,8 +153,9 @@ bool Sender::poll(std::uint64_t session, const Peer& peer, Micros now, Outbox& o
   if (failed_) return false;
   if (now >= deadline_) time_out(now, counts);
   if (now >= overtaken_) lose_overtaken(now);
-  if (now >= probe_) probe(now);
-  while (flying_ < flight_.frames() && (lost_ > 0 || may_send_new())) {
+  bool probes = now >= probe_;
+  if (probes) probe(now);
+  while ((probes || flying_ < flight_.frames()) && (lost_ > 0 || may_send_new())) {
     if (!out.has_room(payload_)) return true;
     std::uint32_t sequence = next_;
     if (lost_ > 0) {
@@ -164,6 +167,7 @@ bool Sender::poll(std::uint64_t session, const Peer& peer, Micros now, Outbox& o
       return false;
     }
     send(sequence, session, peer, now, out, counts);
+    probes = false;
   }
   return false;
 }

@@ -52,7 +52,7 @@ class Sender {
   };
 
   Slot& slot(std::uint32_t sequence) { return slots_[sequence % kMostWindow]; }
-  void arrive(std::uint32_t sequence);
+  void arrive(std::uint32_t sequence, std::uint32_t echo);
   void lose(std::uint32_t sequence);
   void lose_overtaken(Micros now);
   void time_out(Micros now, LinkCounts& counts);

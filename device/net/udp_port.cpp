@@ -10,6 +10,7 @@
 #include <asio/io_context.hpp>
 #include <asio/ip/udp.hpp>
 #include <asio/post.hpp>
+#include <asio/steady_timer.hpp>
 #include <asio/system_error.hpp>
 #include <atomic>
 #include <cerrno>
@@ -33,6 +34,7 @@ namespace {
 using asio::ip::udp;
 
 constexpr int kSocketBuffer = 4 << 20;
+constexpr Micros kFineWait = 20'000;
 constexpr std::size_t kMessages = 32;       // a system call
 constexpr std::size_t kPiece = 65'536;      // largest datagram, or train of them
 constexpr std::size_t kMostSegments = 64;   // of a train
@@ -116,6 +118,7 @@ struct UdpPort::Impl {
 
   asio::io_context io{1};
   udp::socket socket{io};
+  asio::steady_timer timer{io};
   Address address;
   Peer peer;
   bool connected = false;
@@ -278,7 +281,16 @@ struct UdpPort::Impl {
       socket.async_wait(udp::socket::wait_read, [this](const asio::error_code&) { waits = false; });
     }
     io.restart();
-    io.run_one_for(std::chrono::microseconds(std::min<Micros>(time, 1'000'000)));
+    // Waiting for events is good to a millisecond, which is long on a fast link; timers are better.
+    if (time < kFineWait) {
+      timer.expires_after(std::chrono::microseconds(time));
+      timer.async_wait([](const asio::error_code&) {});
+      io.run_one();
+      timer.cancel();
+      io.poll();  // its handler is not to end the next wait
+    } else {
+      io.run_one_for(std::chrono::microseconds(std::min<Micros>(time, 1'000'000)));
+    }
     woken = false;
   }
 };
