@@ -53,7 +53,8 @@ class ServeCommand : public Command {
     options.text(listen_, "--listen", "ADDRESS:PORT",
                  "Where to listen; 0.0.0.0 for every network, port 0 for any that is free");
     options.size(memory_limit_, "--memory-limit",
-                 "Memory for a scene and its build, such as 512M; larger scenes are refused",
+                 "Memory for a scene, and with engine library for its build, such as 512M; larger "
+                 "ones are refused. A machine has what its configuration says",
                  bytes_text(memory_limit_));
     options.number(timeout_s_, "--timeout", "Seconds of silence after which a client is given up",
                    0.1, 60);
@@ -75,8 +76,7 @@ class ServeCommand : public Command {
     context.output.line("listening            {}", server->address().text());
     context.output.line("engine               {}{}{}", what.engine, what.config.empty() ? "" : " ",
                         what.config);
-    context.output.line("scenes               up to {}",
-                        memory_limit_ > 0 ? bytes_text(memory_limit_) : std::string("any size"));
+    context.output.line("scenes               up to {}", bytes_text(server->most_scene_bytes()));
     context.output.finish();  // somebody may be waiting for the port
 
     // A service manager's way of saying Ctrl-C.
@@ -104,8 +104,8 @@ class ServeCommand : public Command {
     model::MachineConfig config =
         take(model::load_config(config_.empty() ? "paper-asic65" : config_));
     for (const std::string& assignment : set_) check(apply_override(config, assignment));
-    return engine_ == EngineChoice::model ? device::model_engine(config)
-                                          : device::rtl_engine(config);
+    if (engine_ == EngineChoice::model) return device::model_engine(config);
+    return take(device::rtl_engine(config));
   }
 
   void tell(Context& context, const device::SessionEnd& end) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/engines/engine.h"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
+#include "device/link/messages.h"
+#include "model/memory/make_memory.h"
 #include "model/report/simulate.h"
 #include "rtl/engine/rtl_machine.h"
 
@@ -22,9 +25,17 @@ Outcome outcome_of(model::SimulationResult&& result) {
   return outcome;
 }
 
+constexpr std::uint64_t kMostSceneBytes = std::uint64_t{kTriangleBytes} * kMaxTriangles;
+
+// What the machine's memory holds, at most: arrays of its own come beside the scene.
+std::uint64_t most_scene_bytes(const model::MachineConfig& config) {
+  const std::uint64_t capacity = model::make_memory(config.memory)->traits().capacity_bytes;
+  return capacity == 0 ? kMostSceneBytes : std::min(capacity, kMostSceneBytes);
+}
+
 template <typename Simulate>
 Engine machine_engine(const char* name, const model::MachineConfig& config, Simulate simulate) {
-  Engine engine{name, config.name, {}};
+  Engine engine{name, config.name, most_scene_bytes(config), {}};
   engine.build = [config, simulate](const MeshView& mesh, const Order&,
                                     const ProgressCallback& progress) -> Result<Outcome> {
     model::SimulationOptions options;
@@ -40,7 +51,7 @@ Engine machine_engine(const char* name, const model::MachineConfig& config, Simu
 }  // namespace
 
 Engine library_engine() {
-  Engine engine{"library", "", {}};
+  Engine engine{"library", "", kMostSceneBytes, {}};
   engine.build = [builder = std::make_shared<Builder>()](
                      const MeshView& mesh, const Order& order,
                      const ProgressCallback& progress) -> Result<Outcome> {
@@ -67,7 +78,10 @@ Engine model_engine(const model::MachineConfig& config) {
                         });
 }
 
-Engine rtl_engine(const model::MachineConfig& config) {
+Result<Engine> rtl_engine(const model::MachineConfig& config) {
+  // A scene without triangles is built in no time, where anything can be.
+  const auto trial = rtl::simulate_rtl(MeshView(), config, model::SimulationOptions());
+  if (!trial.ok() && trial.status().code() == StatusCode::invalid_argument) return trial.status();
   return machine_engine("rtl", config,
                         [](const MeshView& mesh, const model::MachineConfig& machine,
                            const model::SimulationOptions& options) {
@@ -89,7 +103,8 @@ Result<Engine> make_engine(const std::string& name, const std::string& config) {
   const Result<model::MachineConfig> machine =
       model::load_config(config.empty() ? "paper-asic65" : config);
   if (!machine.ok()) return machine.status();
-  return name == "model" ? model_engine(machine.value()) : rtl_engine(machine.value());
+  if (name == "model") return model_engine(machine.value());
+  return rtl_engine(machine.value());
 }
 
 }  // namespace fasttree::device

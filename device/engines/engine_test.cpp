@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "device/engines/local_device.h"
+#include "model/memory/make_memory.h"
 #include "tests/support/meshes.h"
 
 namespace fasttree::device {
@@ -61,14 +62,27 @@ TEST(Engines, MachinesFollowTheirConfiguration) {
   }
 }
 
+TEST(Engines, MachinesHoldWhatTheirMemoryHolds) {
+  for (const char* config : {"paper-fpga", "fasttree-2"}) {
+    const std::uint64_t capacity =
+        model::make_memory(model::load_config(config).value().memory)->traits().capacity_bytes;
+    ASSERT_GT(capacity, 0u);
+    LocalDevice device(make_engine("model", config).value(), 1);
+    EXPECT_EQ(device.describe().value().most_scene_bytes, capacity);
+  }
+  EXPECT_EQ(library_engine().most_scene_bytes, std::uint64_t{36} * kMaxTriangles);
+}
+
 TEST(Engines, RtlBuildsOrSaysWhyNot) {
   const auto mesh = random_mesh(100);
-  LocalDevice device(make_engine("rtl", "paper-fpga").value(), 1);
-  const auto built = build_on(device, mesh.view(), Order());
-  if (!built.ok()) {
-    EXPECT_EQ(built.status().code(), StatusCode::invalid_argument);
-    GTEST_SKIP() << built.status().message();
+  const auto engine = make_engine("rtl", "paper-fpga");
+  if (!engine.ok()) {
+    EXPECT_EQ(engine.status().code(), StatusCode::invalid_argument);
+    GTEST_SKIP() << engine.status().message();
   }
+  LocalDevice device(engine.value(), 1);
+  const auto built = build_on(device, mesh.view(), Order());
+  ASSERT_TRUE(built.ok()) << built.status().message();
   const TreeInfo& info = built.value().tree.info();
   BuildSettings same;
   same.profile = Profile::paper;
@@ -81,6 +95,8 @@ TEST(Engines, WrongNamesAreRefused) {
   EXPECT_EQ(make_engine("fpga", "").status().code(), StatusCode::invalid_argument);
   EXPECT_EQ(make_engine("library", "paper-fpga").status().code(), StatusCode::invalid_argument);
   EXPECT_FALSE(make_engine("model", "no-such-machine").ok());
+  // There is none, before anything is built.
+  EXPECT_EQ(make_engine("rtl", "fasttree-2").status().code(), StatusCode::invalid_argument);
 }
 
 TEST(LocalDevice, KeepsToItsOrder) {
@@ -104,7 +120,7 @@ TEST(LocalDevice, KeepsToItsOrder) {
 
 // An engine that runs until it is cancelled.
 Engine endless_engine() {
-  Engine engine{"library", "", {}};
+  Engine engine{"library", "", 1 << 20, {}};
   engine.build = [](const MeshView&, const Order&,
                     const ProgressCallback& progress) -> Result<Outcome> {
     while (progress("waiting", 0.5)) std::this_thread::sleep_for(milliseconds(1));
@@ -142,7 +158,7 @@ TEST(LocalDevice, GoesAwayWithABuildRunning) {
 
 TEST(LocalDevice, AnEngineThatThrowsHasFailed) {
   const auto mesh = random_mesh(10);
-  Engine engine{"library", "", {}};
+  Engine engine{"library", "", 1 << 20, {}};
   engine.build = [](const MeshView&, const Order&, const ProgressCallback&) -> Result<Outcome> {
     throw std::bad_alloc();
   };

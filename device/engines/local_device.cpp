@@ -15,7 +15,7 @@ Result<Description> LocalDevice::describe() {
   description.engine = engine_.name;
   description.config = engine_.config;
   description.program = "fasttree, in this process";
-  description.most_scene_bytes = std::uint64_t{kTriangleBytes} * kMaxTriangles;
+  description.most_scene_bytes = engine_.most_scene_bytes;
   description.busy = job_.runs();
   return description;
 }

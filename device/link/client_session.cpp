@@ -122,7 +122,8 @@ void ClientSession::on_refuse(const Frame& frame, Micros now) {
       return end({StatusCode::resource_limit,
                   "the scene has " + std::to_string(scene_.size()) +
                       " bytes, and the device takes " + std::to_string(refuse->limit) +
-                      "; take a smaller scene, or give fasttree serve a larger --memory-limit"});
+                      "; take a smaller scene, or a device with more memory (fasttree serve "
+                      "--memory-limit)"});
     case Refusal::not_possible:
       return end(network_failure(
           "the device does not know what was asked for; is its version another one?"));

@@ -119,14 +119,15 @@ TEST(Endurance, KilledAtAnyMomentTheOtherSideEndsInTimeAndServesTheNext) {
     const bool kill_server = kill % 2 == 0;
     const Scenes::Case& scene = scenes.pick(world.network);
     const SceneSource source(scene.mesh.view());
-    world.build_time = world.network.below(20'000);
+    world.build_time = 2000 + world.network.below(18'000);
     ClientSettings settings;
     settings.timeout_ms = 1000;
     settings.patience_ms = 3000;
     auto client = std::make_unique<ClientSession>(settings, 10 * kill, scene.order, source,
                                                   SimulatedWorld::server_peer(), world.now);
     ClientSession* one[] = {client.get()};
-    const Micros moment = world.now + world.network.below(30'000);
+    // Any moment of a session, and now and then one after it.
+    const Micros moment = world.now + world.network.below(world.build_time + 2000);
     while (!client->ended() && world.now < moment && world.step(one, moment)) {
     }
     const bool was_open = world.server->in_session();
@@ -161,7 +162,7 @@ TEST(Endurance, KilledAtAnyMomentTheOtherSideEndsInTimeAndServesTheNext) {
   }
   std::cout << kills << " kills, " << in_session << " of them within a session, " << told
             << " noticed by the other side\n";
-  EXPECT_GT(in_session, kills / 4);
+  EXPECT_GT(in_session, kills / 2);
 }
 
 }  // namespace

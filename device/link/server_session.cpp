@@ -105,13 +105,17 @@ void ServerSession::on_hello(const Frame& frame, const Peer& from, Micros now) {
     return;
   }
   if (busy()) return reply({FrameType::refuse, session, from, {Refusal::busy, 0}});
-  const std::uint64_t most = std::min<std::uint64_t>(settings_.description.most_scene_bytes,
-                                                     std::uint64_t{kTriangleBytes} * kMaxTriangles);
-  if (hello->scene_bytes > most) {
-    return reply({FrameType::refuse, session, from, {Refusal::scene_too_large, most}});
+  if (hello->scene_bytes > most_scene_bytes()) {
+    return reply(
+        {FrameType::refuse, session, from, {Refusal::scene_too_large, most_scene_bytes()}});
   }
   hello_timestamp_ = frame.header.timestamp;
   begin(*hello, session, from, now);
+}
+
+std::uint64_t ServerSession::most_scene_bytes() const {
+  return std::min(settings_.description.most_scene_bytes,
+                  std::uint64_t{kTriangleBytes} * kMaxTriangles);
 }
 
 void ServerSession::begin(const Hello& hello, std::uint64_t session, const Peer& from, Micros now) {

@@ -73,6 +73,7 @@ class ServerSession {
   /// How sessions ended since the last call.
   std::vector<SessionEnd> take_ends();
   const LinkCounts& counts() const { return counts_; }
+  std::uint64_t most_scene_bytes() const;
 
  private:
   enum class State { idle, receiving, building, offering, sending, faulting };

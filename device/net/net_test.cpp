@@ -77,7 +77,7 @@ ClientSettings client_settings() {
 }
 
 Engine endless_engine() {
-  Engine engine{"library", "", {}};
+  Engine engine{"library", "", 1 << 20, {}};
   engine.build = [](const MeshView&, const Order&,
                     const ProgressCallback& progress) -> Result<Outcome> {
     while (progress("waiting", 0.5)) std::this_thread::sleep_for(milliseconds(1));

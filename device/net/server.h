@@ -18,7 +18,7 @@ namespace fasttree::device {
 
 struct ServeSettings {
   Address listen;
-  std::uint64_t memory_limit_bytes = 0;  ///< of scene and build together; 0: none
+  std::uint64_t memory_limit_bytes = 0;  ///< of scene and build of the library; 0: none
   std::uint32_t payload = kLargestPayload;
   std::uint32_t timeout_ms = 5000;
   std::string program;  ///< for the description
@@ -34,6 +34,9 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   const Address& address() const { return port_.address(); }
+
+  /// Larger ones are refused.
+  std::uint64_t most_scene_bytes() const { return session_.most_scene_bytes(); }
 
   /// Serves until `go_on` says false, which is asked a few times a second. Tells about each session
   /// that has ended.

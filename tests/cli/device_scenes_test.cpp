@@ -22,11 +22,13 @@ TEST_P(DeviceScene, ComesBackVerifiedAndDrawn) {
   std::vector<std::string> serve = {"serve", "--listen", "127.0.0.1:0", "--engine", engine};
   if (!library) serve.insert(serve.end(), {"--config", "paper-fpga"});
   Background server(serve);
-  ASSERT_TRUE(server.read_until("scenes"));
+  if (!server.read_until("scenes") && std::string(engine) == "rtl" && server.wait() == 2) {
+    GTEST_SKIP() << "no RTL was built";
+  }
+  ASSERT_NE(server.word_after("scenes"), "") << server.out();
   const std::string device = "udp://" + server.word_after("listening");
 
   const RunResult run_there = run({"build", path, "--device", device, "--json", "-"});
-  if (run_there.exit_code == 2) GTEST_SKIP() << run_there.err;
   ASSERT_EQ(run_there.exit_code, 0) << run_there.err;
   const auto there = run_there.json();
   std::vector<std::string> here = {"build", path, "--profile", there["profile"]};

@@ -162,7 +162,7 @@ std::string Background::word_after(const std::string& text) const {
 }
 
 void Background::signal(int number) {
-  kill(pid_, number);
+  if (pid_ > 0) kill(pid_, number);  // -1 would be everybody
 }
 
 int Background::wait() {
