@@ -40,6 +40,8 @@ void DeviceOptions::declare(Options& options) {
                 device::kLeastPayload, device::kLargestPayload);
   options.number(timeout_s_, "--device-timeout",
                  "Seconds of silence after which the device is given up", 0.1, 60);
+  options.number(wait_s_, "--device-wait",
+                 "Seconds to wait for a device that is busy with another session", 0, 86400);
 }
 
 DeviceTree DeviceOptions::build(Context& context, const MeshView& mesh,
@@ -51,6 +53,7 @@ DeviceTree DeviceOptions::build(Context& context, const MeshView& mesh,
     device::ClientSettings client;
     client.payload = payload_;
     client.timeout_ms = static_cast<std::uint32_t>(timeout_s_ * 1000);
+    client.patience_ms = static_cast<std::uint32_t>(wait_s_ * 1000);
     if (settings.memory_limit_bytes > 0) client.most_result_bytes = settings.memory_limit_bytes;
     auto owned =
         std::make_unique<device::RemoteDevice>(take(device::parse_address(device_)), client);

@@ -40,6 +40,7 @@ class DeviceOptions {
   std::string device_;
   std::uint32_t payload_ = 1440;
   double timeout_s_ = 5;
+  double wait_s_ = 0;
 };
 
 /// Throws where the tree breaks an invariant, without or with its mesh: whatever uses a tree relies

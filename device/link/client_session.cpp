@@ -117,7 +117,8 @@ void ClientSession::on_refuse(const Frame& frame, Micros now) {
         repeat_.start(now + kBusyWait, kHelloWait, kMostHelloWait);
         return;
       }
-      return end(network_failure("the device is busy with another session; try again later"));
+      return end(network_failure(
+          "the device is busy with another session; try again later, or wait (--device-wait)"));
     case Refusal::scene_too_large:
       return end({StatusCode::resource_limit,
                   "the scene has " + std::to_string(scene_.size()) +

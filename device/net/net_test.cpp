@@ -4,7 +4,7 @@
 
 #include <atomic>
 #include <chrono>
-#include <cstdlib>
+#include <iostream>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -15,6 +15,7 @@
 #include "device/engines/local_device.h"
 #include "device/net/remote_device.h"
 #include "device/net/server.h"
+#include "device/testing/many.h"
 #include "device/testing/udp_relay.h"
 #include "tests/support/meshes.h"
 
@@ -244,8 +245,7 @@ TEST(Remote, TheSecondOfTwoIsToldThatItIsBusy) {
 }
 
 TEST(Remote, BuildsThroughABadNetworkOfRealSockets) {
-  const char* asked = std::getenv("FASTTREE_DEVICE_SOCKET_BUILDS");
-  const int builds = asked != nullptr ? std::atoi(asked) : 60;
+  const std::uint64_t builds = test::asked("FASTTREE_DEVICE_SOCKET_BUILDS", 60);
   Running server(library_engine());
   Impairment bad = Impairment::all(0.05);
   bad.corrupt = bad.truncate = 0.01;
@@ -253,10 +253,19 @@ TEST(Remote, BuildsThroughABadNetworkOfRealSockets) {
   const UdpRelay relay(server.address(), bad, 5);
   const auto mesh = random_mesh(700);
   RemoteDevice device(relay.address(), client_settings());
-  for (int i = 0; i < builds; ++i) expect_builds(device, mesh);
+  std::uint64_t resident = 0;
+  for (std::uint64_t i = 0; i < builds; ++i) {
+    expect_builds(device, mesh);
+    if (i == builds / 2) resident = test::resident_kib();
+  }
   EXPECT_GT(device.counts().retransmitted, 0u);
   server.stop();
   EXPECT_GT(server.server().counts().dropped(), 0u);
+  std::cout << builds << " builds; resident memory " << resident << " KiB after half of them, "
+            << test::resident_kib() << " KiB at the end\n";
+  if (test::kMemoryIsFlat) {
+    EXPECT_LT(test::resident_kib(), resident + 8192);
+  }
 }
 
 }  // namespace

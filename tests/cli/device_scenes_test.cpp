@@ -16,7 +16,7 @@ class DeviceScene : public testing::TestWithParam<std::tuple<const char*, const 
 
 TEST_P(DeviceScene, ComesBackVerifiedAndDrawn) {
   const auto [name, engine] = GetParam();
-  const std::string path = shared_scene(name);
+  const std::string path = real_scene(name);
   if (path.empty()) GTEST_SKIP() << name << " is not on this machine";
   const bool library = std::string(engine) == "library";
   std::vector<std::string> serve = {"serve", "--listen", "127.0.0.1:0", "--engine", engine};
