@@ -191,7 +191,7 @@ class World {
   }
 
   void poll() {
-    Outbox& out = out_;
+    static Outbox out;  // large: making one takes longer than a script
     for (bool more = true; more;) {
       out.clear();
       more = server_.poll(now_, out);
@@ -218,7 +218,6 @@ class World {
   ClientSession client_;
   std::optional<SceneOrder> building_;
   std::deque<Datagram> to_client_, to_server_;
-  Outbox out_;
 };
 
 }  // namespace
