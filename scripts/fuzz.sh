@@ -19,7 +19,8 @@ seconds=${FASTTREE_FUZZ_SECONDS:-5}
 
 CC=${clang/clang++/clang} CXX=$clang configure_and_build build-fuzz fuzz/all \
   -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -g1" \
-  -DFASTTREE_FUZZ=ON -DFASTTREE_SANITIZE=address,undefined -DFASTTREE_TESTS=OFF -DFASTTREE_APPS=ON
+  -DFASTTREE_FUZZ=ON -DFASTTREE_SANITIZE=address,undefined -DFASTTREE_TESTS=OFF -DFASTTREE_APPS=ON \
+  -DFASTTREE_RTL=OFF
 
 mapfile -t targets < <(find build-fuzz/fuzz -maxdepth 1 -type f -executable -name '*_fuzz' | sort)
 [ ${#targets[@]} -gt 0 ] || fail "no fuzz target was built"

@@ -14,7 +14,7 @@ cd "$(dirname "$0")/.."
 . scripts/lib.sh
 
 build=(g++ cmake ninja-build pkg-config libtbb-dev libhwy-dev libxxhash-dev libfmt-dev
-       libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libfast-float-dev libstb-dev
+       libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libfast-float-dev libstb-dev libasio-dev
        libembree-dev libsdl2-dev zlib1g-dev verilator ca-certificates curl jq)
 test=(libgtest-dev librapidcheck-dev libtinyobjloader-dev)
 ci=(clang-14 libclang-rt-14-dev clang-format gcovr libbenchmark-dev yosys z3 qflow-tech-osu018

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "command.h"
+#include "devices.h"
 #include "fasttree/quality.h"
 #include "fasttree/tree_file.h"
 #include "inputs.h"
@@ -32,12 +33,14 @@ class BuildCommand : public Command {
            "trees\n"
            "have equal hashes, for any number of threads and any instruction set.\n\n"
            "Example:\n"
-           "  fasttree build bunny.ply --out bunny.ft --json figures.json";
+           "  fasttree build bunny.ply --out bunny.ft --json figures.json\n"
+           "  fasttree build bunny.ply --device udp://127.0.0.1:18004";
   }
 
   void declare(Options& options) override {
     options.positional(scene_, "SCENE", "A mesh file, or scene:NAME");
     build_.declare(options);
+    device_.declare(options);
     options.count(repeat_, "--repeat", "Builds in the same memory; times are their medians", 1,
                   100000);
     options.text(out_, "--out", "FILE", "Save the tree");
@@ -46,7 +49,9 @@ class BuildCommand : public Command {
   int run(Context& context) override {
     const LoadedScene scene = load_scene(context, scene_, build_.settings.memory_limit_bytes);
     Tree tree;
-    const Times times = build_repeatedly(context, scene.view, tree);
+    std::optional<DeviceTree> built;
+    const Times times = device_.given() ? build_on_device(context, scene.view, tree, built)
+                                        : build_repeatedly(context, scene.view, tree);
     const Quality quality = measure_quality(tree, build_.settings.sah_costs);
     double save_ms = 0;
     if (!out_.empty()) {
@@ -55,8 +60,11 @@ class BuildCommand : public Command {
       save_ms = milliseconds_since(start);
     }
     context.progress.clear();
+    if (built) print_device(context.output, *built);
     print(context.output, scene, tree, times, quality);
-    context.output.json(json(context, scene, tree, times, quality, save_ms), context.common.json);
+    ordered_json figures = json(context, scene, tree, times, quality, save_ms);
+    if (built) figures["device"] = app::json_of(*built);
+    context.output.json(figures, context.common.json);
     return kDone;
   }
 
@@ -94,6 +102,18 @@ class BuildCommand : public Command {
     return times;
   }
 
+  Times build_on_device(Context& context, const MeshView& mesh, Tree& tree,
+                        std::optional<DeviceTree>& built) const {
+    Times times;
+    for (std::uint32_t i = 0; i < repeat_; ++i) {
+      built = device_.build(context, mesh, build_.settings);
+      times.builds.push_back(built->counters.build_ms);
+    }
+    check_tree_of(*built, mesh);
+    tree = built->tree;
+    return times;
+  }
+
   void print(Output& output, const LoadedScene& scene, const Tree& tree, const Times& times,
              const Quality& quality) const {
     const TreeInfo& info = tree.info();
@@ -115,12 +135,17 @@ class BuildCommand : public Command {
       output.line("  {:<18} {:.2f} ms", stage.stage, stage.ms);
     }
     print_quality(output, quality);
-    output.line("memory               {} planned{} (the tree itself {})",
-                bytes_text(times.planned_bytes),
-                times.resident_bytes
-                    ? fmt::format(", {} used at the peak", bytes_text(*times.resident_bytes))
-                    : "",
-                bytes_text(tree.nodes().size_bytes() + tree.ids().size_bytes()));
+    const std::string tree_bytes = bytes_text(tree.nodes().size_bytes() + tree.ids().size_bytes());
+    if (device_.given()) {
+      output.line("memory               {} of tree", tree_bytes);
+    } else {
+      output.line("memory               {} planned{} (the tree itself {})",
+                  bytes_text(times.planned_bytes),
+                  times.resident_bytes
+                      ? fmt::format(", {} used at the peak", bytes_text(*times.resident_bytes))
+                      : "",
+                  tree_bytes);
+    }
     output.line("hash                 {}", hash_string(tree.hash()));
     if (!out_.empty()) output.line("saved                {}", out_);
   }
@@ -158,7 +183,8 @@ class BuildCommand : public Command {
       json["tree_file"] = out_;
     }
     json["stages"] = stages;
-    json["planned_bytes"] = times.planned_bytes;
+    json["planned_bytes"] =
+        device_.given() ? ordered_json(nullptr) : ordered_json(times.planned_bytes);
     json["peak_resident_bytes"] =
         times.resident_bytes ? ordered_json(*times.resident_bytes) : ordered_json(nullptr);
     json["tree_bytes"] = tree.nodes().size_bytes() + tree.ids().size_bytes();
@@ -169,6 +195,7 @@ class BuildCommand : public Command {
 
   std::string scene_;
   BuildOptions build_;
+  DeviceOptions device_;
   std::uint32_t repeat_ = 1;
   std::string out_;
 };

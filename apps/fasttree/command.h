@@ -22,7 +22,7 @@ enum ExitCode : int {
   kDone = 0,
   kCheckFailed = 1,    ///< the check that was asked for did not pass
   kUsage = 2,          ///< wrong option or value
-  kBadInput = 3,       ///< a file cannot be read or written, or what is in it is wrong
+  kBadInput = 3,       ///< a file or a device cannot be read or written, or what is in it is wrong
   kResourceLimit = 4,  ///< memory or disk
   kCancelled = 130,    ///< Ctrl-C, as shells count it
 };
@@ -83,5 +83,6 @@ std::unique_ptr<Command> make_simulate_command();
 std::unique_ptr<Command> make_diff_command();
 std::unique_ptr<Command> make_explore_command();
 std::unique_ptr<Command> make_reproduce_command();
+std::unique_ptr<Command> make_serve_command();
 
 }  // namespace fasttree::app

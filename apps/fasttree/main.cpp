@@ -88,7 +88,8 @@ std::vector<Entry> declare_commands(CLI::App& program, CommonOptions& common) {
   for (const auto make :
        {make_info_command, make_build_command, make_verify_command, make_render_command,
         make_compare_command, make_animate_command, make_view_command, make_memory_command,
-        make_simulate_command, make_diff_command, make_explore_command, make_reproduce_command}) {
+        make_simulate_command, make_diff_command, make_explore_command, make_reproduce_command,
+        make_serve_command}) {
     Entry entry{make(), nullptr};
     entry.app = program.add_subcommand(entry.command->name(), entry.command->summary());
     entry.app->footer(entry.command->details());

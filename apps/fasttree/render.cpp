@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "command.h"
+#include "devices.h"
 #include "fasttree/build.h"
 #include "fasttree/tree_file.h"
 #include "fasttree/verify.h"
@@ -42,7 +43,8 @@ class RenderCommand : public Command {
            "cut by a plane. Without camera options the view is chosen from the scene.\n\n"
            "Example:\n"
            "  fasttree render scene:knot --size 1280x720 --samples 4 --ao 16 --out knot.png\n"
-           "  fasttree render bunny.ply --mode heat --out heat.png";
+           "  fasttree render bunny.ply --mode heat --out heat.png\n"
+           "  fasttree render bunny.ply --device udp://127.0.0.1:18004 --out bunny.png";
   }
 
   void declare(Options& options) override {
@@ -75,6 +77,7 @@ class RenderCommand : public Command {
     options.number(slice_position_, "--slice", "Mode leaves: where the plane is; else the middle",
                    -1e30, 1e30);
     build_.declare(options);
+    device_.declare(options);
   }
 
   int run(Context& context) override {
@@ -88,14 +91,25 @@ class RenderCommand : public Command {
     if (!from_file && !mesh_.empty()) {
       throw Failure{kUsage, fmt::format("--mesh goes with a tree file, and '{}' is none", input_)};
     }
+    if (from_file && device_.given()) {
+      throw Failure{kUsage, fmt::format("--device goes with a scene, and '{}' is a tree", input_)};
+    }
     const std::string& spec = from_file ? mesh_ : input_;
     const LoadedScene scene = load_scene(context, spec, build_.settings.memory_limit_bytes);
-    Builder builder;
     Tree tree;
+    double build_ms = 0;
+    std::optional<DeviceTree> built;
     if (from_file) {
       tree = load_tree_for(scene.view);
+    } else if (device_.given()) {
+      built = device_.build(context, scene.view, build_.settings);
+      check_tree_of(*built, scene.view);
+      tree = built->tree;
+      build_ms = built->counters.build_ms;
     } else {
+      Builder builder;
       check(builder.build(scene.view, build_.with_progress(context), tree));
+      build_ms = builder.stats().build_ms;
     }
     const Tracer tracer = make_tracer(tree, scene.view);
 
@@ -110,7 +124,8 @@ class RenderCommand : public Command {
     check(render::write_png(image, out_));
     context.progress.clear();
 
-    print(context.output, scene, from_file ? 0.0 : builder.stats().build_ms, stats);
+    if (built) print_device(context.output, *built);
+    print(context.output, scene, build_ms, stats);
     ordered_json json = json_of_program();
     json["scene"] = scene.mesh.name;
     json["triangles"] = scene.view.triangle_count;
@@ -122,7 +137,8 @@ class RenderCommand : public Command {
     json["camera"] = app::json_of(settings_.camera);
     json["threads"] = context.threads;
     json["load_ms"] = scene.load_ms;
-    if (!from_file) json["build_ms"] = builder.stats().build_ms;
+    if (!from_file) json["build_ms"] = build_ms;
+    if (built) json["device"] = app::json_of(*built);
     json["render_ms"] = stats.total_ms;
     json["mrays_per_s"] = stats.mrays_per_s;
     json["primary"] = json_of(stats.primary);
@@ -172,6 +188,7 @@ class RenderCommand : public Command {
   render::RenderSettings settings_;
   CameraOptions camera_;
   BuildOptions build_;
+  DeviceOptions device_;
   std::optional<double> light_radius_;
   std::optional<double> ao_radius_;
   std::optional<double> slice_position_;

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "command.h"
+#include "devices.h"
 #include "fasttree/build.h"
 #include "fasttree/tree_file.h"
 #include "inputs.h"
@@ -52,13 +53,15 @@ class VerifyCommand : public Command {
            "    exactly. Oracle auto is brute force where that takes half a minute or so.\n\n"
            "Example:\n"
            "  fasttree verify bunny.ply --rays 100000\n"
-           "  fasttree verify bunny.ft --mesh bunny.ply";
+           "  fasttree verify bunny.ft --mesh bunny.ply\n"
+           "  fasttree verify bunny.ply --device udp://127.0.0.1:18004";
   }
 
   void declare(Options& options) override {
     options.positional(input_, "SCENE|TREE", "A scene to build, or a tree file");
     options.text(mesh_, "--mesh", "SCENE", "The scene that the tree file was built for");
     build_.declare(options);
+    device_.declare(options);
     options.count(rays_, "--rays", "Rays to trace, over all kinds of them; 0: none", 0,
                   1'000'000'000'000);
     options.choice(oracle_, "--oracle", "Who judges the rays",
@@ -78,6 +81,9 @@ class VerifyCommand : public Command {
     if (!from_file && !mesh_.empty()) {
       throw Failure{kUsage, fmt::format("--mesh goes with a tree file, and '{}' is none", input_)};
     }
+    if (from_file && device_.given()) {
+      throw Failure{kUsage, fmt::format("--device goes with a scene, and '{}' is a tree", input_)};
+    }
     json_ = json_of_program();
     json_["input"] = input_;
     std::optional<Tree> file;
@@ -96,6 +102,13 @@ class VerifyCommand : public Command {
     Tree tree;
     if (file) {
       tree = std::move(*file);
+      take_over(tree.info());
+    } else if (device_.given()) {
+      DeviceTree built = device_.build(context, scene.view, build_.settings);
+      context.progress.clear();
+      print_device(context.output, built);
+      json_["device"] = app::json_of(built);
+      tree = std::move(built.tree);
       take_over(tree.info());
     } else {
       tree = build(context, scene.view, build_.settings, "building");
@@ -311,6 +324,7 @@ class VerifyCommand : public Command {
   std::string input_;
   std::string mesh_;
   BuildOptions build_;
+  DeviceOptions device_;
   std::uint64_t rays_ = 10'000;
   OracleChoice oracle_ = OracleChoice::automatic;
   std::uint64_t seed_ = 1;

@@ -112,6 +112,68 @@ nlohmann::json run_json(std::vector<std::string> arguments) {
   return result.json();
 }
 
+Background::Background(const std::vector<std::string>& arguments) {
+  std::array<int, 2> out{};
+  if (pipe2(out.data(), O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+  std::vector<std::string> words = {FASTTREE_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  pid_ = fork();
+  if (pid_ < 0) throw std::runtime_error("no process");
+  if (pid_ == 0) {
+    dup2(out[1], STDOUT_FILENO);
+    execv(FASTTREE_PROGRAM, argv.data());
+    _exit(127);
+  }
+  close(out[1]);
+  pipe_ = out[0];
+}
+
+Background::~Background() {
+  if (pid_ > 0) {
+    kill(pid_, SIGKILL);
+    wait();
+  }
+  close(pipe_);
+}
+
+bool Background::read_more() {
+  std::array<char, 4096> buffer{};
+  const ssize_t n = read(pipe_, buffer.data(), buffer.size());
+  if (n > 0) out_.append(buffer.data(), static_cast<std::size_t>(n));
+  return n > 0;
+}
+
+bool Background::read_until(const std::string& text) {
+  for (;;) {
+    const std::size_t at = out_.find(text);
+    if (at != std::string::npos && out_.find('\n', at) != std::string::npos) return true;
+    if (!read_more()) return false;
+  }
+}
+
+std::string Background::word_after(const std::string& text) const {
+  const std::size_t at = out_.find(text);
+  if (at == std::string::npos) return "";
+  const std::size_t begin = out_.find_first_not_of(' ', at + text.size());
+  return out_.substr(begin, out_.find_first_of(" \n", begin) - begin);
+}
+
+void Background::signal(int number) {
+  if (pid_ > 0) kill(pid_, number);  // -1 would be everybody
+}
+
+int Background::wait() {
+  while (read_more()) {
+  }
+  int status = 0;
+  waitpid(pid_, &status, 0);
+  pid_ = -1;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
 Folder::Folder() {
   std::string name = (std::filesystem::temp_directory_path() / "fasttree_cli_XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder for the test");

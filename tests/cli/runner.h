@@ -31,6 +31,32 @@ RunResult run(const std::vector<std::string>& arguments, const RunSettings& sett
 /// Runs, and expects exit 0 and JSON on standard output.
 nlohmann::json run_json(std::vector<std::string> arguments);
 
+/// The program in the background, with what it prints so far. Killed where it still runs at the
+/// end.
+class Background {
+ public:
+  explicit Background(const std::vector<std::string>& arguments);
+  ~Background();
+  Background(const Background&) = delete;
+  Background& operator=(const Background&) = delete;
+
+  int pid() const { return pid_; }
+  /// Reads standard output until `text` and the end of its line are there; false at the end of it.
+  bool read_until(const std::string& text);
+  /// The word behind `text` in what was read.
+  std::string word_after(const std::string& text) const;
+  void signal(int number);
+  /// Reads the rest and waits. The exit code, or 128 and the signal.
+  int wait();
+  const std::string& out() const { return out_; }
+
+ private:
+  bool read_more();
+  int pid_ = -1;
+  int pipe_ = -1;
+  std::string out_;
+};
+
 /// A folder of the running test's own, empty, removed when it ends.
 class Folder {
  public:
