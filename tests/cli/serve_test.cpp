@@ -167,7 +167,8 @@ TEST(Serve, CtrlCOfTheClientFreesTheServer) {
 
 TEST(Serve, TheSecondOfTwoIsToldOrWaits) {
   Served server({"--engine", "model"});
-  Background first({"build", "scene:knot:50k", "--device", server.device(), "--quiet"});
+  Background first(
+      {"build", "scene:knot:50k", "--device", server.device(), "--device-wait", "600", "--quiet"});
   // Until it has the server.
   const auto start = Clock::now();
   RunResult second;
