@@ -23,6 +23,7 @@ img { display: block; max-width: 100%; height: auto; border-radius: 0.4rem; back
 .pair > * { min-width: 0; }
 .scroll { margin: 0.8rem 0; }
 caption { text-align: left; color: var(--soft); padding-bottom: 0.3rem; }
+th, td { padding: 0.25rem 0.45rem; }
 thead th { border-bottom: 2px solid var(--line); vertical-align: bottom; }
 tbody th { color: var(--text); font-weight: 500; }
 th.words, td.words { text-align: left; white-space: normal; min-width: 9rem; }
