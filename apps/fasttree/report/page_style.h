@@ -38,7 +38,7 @@ svg.strip { height: 1.1rem; border-radius: 0.15rem; }
 rect.less { fill: #009e73; } rect.more { fill: #d55e00; }
 path.middle { stroke: var(--soft); fill: none; vector-effect: non-scaling-stroke; }
 @media (max-width: 44rem) {
-  .bar { grid-template-columns: 1fr 8.5rem; margin-bottom: 0.35rem; }
+  .bar { grid-template-columns: 1fr 9.5rem; margin-bottom: 0.35rem; }
   .tornado .bar { grid-template-columns: 1fr; margin-bottom: 0.6rem; }
   .bar > span:first-child { grid-column: 1 / -1; }
 }
