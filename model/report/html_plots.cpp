@@ -105,10 +105,7 @@ std::string time_axis(const SimulationResult& result) {
   const int digits = std::max(0, static_cast<int>(-std::floor(std::log10(step))));
   std::string text = "<div class=\"axis\">";
   for (int i = 0; i * step <= most * (1 + 1e-9) && most > 0; ++i) {
-    // The last label would stand beyond the plot.
-    const double part = i * step / most;
-    text +=
-        "<span style=\"left:" + fixed(100 * part, 2) + "%\">" + fixed(i * step, digits) + "</span>";
+    text += axis_label(i * step / most, fixed(i * step, digits));
   }
   return text + "</div>\n";
 }

@@ -49,12 +49,22 @@ TEST(CliReproduceAll, PageJsonAndTablesAgreeAndStayTheSame) {
   const std::string scene = folder.path("<i>&amp;.obj"), first = folder.path("a/deep"),
                     second = folder.path("b");
   write_file(scene, kTriangle);
-  const json all = run_json(quick(first, scene));
+  // A scene that there is nothing to say of is left out, and named.
+  const std::string empty = folder.path("empty.ply");
+  write_file(empty,
+             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+             "property float z\nelement face 0\nproperty list uchar int vertex_indices\n"
+             "end_header\n0 0 0\n1 0 0\n0 1 0\n");
+  std::vector<std::string> arguments = quick(first, scene);
+  arguments.insert(arguments.end(), {"--scene", empty});
+  const json all = run_json(arguments);
 
   // What it is, and that nothing of it is the paper's.
   ASSERT_EQ(all["scenes"].size(), 2u);
   EXPECT_EQ(all["scenes"][1]["scene"], "<i>&amp;");
-  EXPECT_EQ(all["missing"].size(), 6u);
+  ASSERT_EQ(all["missing"].size(), 7u);
+  EXPECT_EQ(all["missing"][0]["scene"], "empty");
+  EXPECT_EQ(all["missing"][0]["reason"], "it has no triangles");
   for (const json& one : all["scenes"]) {
     EXPECT_EQ(one["same_tree"], true);
     EXPECT_EQ(one["of_paper"], false);
@@ -103,7 +113,8 @@ TEST(CliReproduceAll, PageJsonAndTablesAgreeAndStayTheSame) {
   }
 
   // Once more: but for what was measured, the same to the byte.
-  const RunResult again = run(quick(second, scene));
+  std::replace(arguments.begin(), arguments.end(), first, second);
+  const RunResult again = run(arguments);
   ASSERT_EQ(again.exit_code, 0) << again.err;
   EXPECT_NE(again.out.find("missing: Conference"), std::string::npos) << again.out;
   const std::string page_again = read_file(second + "/report.html");

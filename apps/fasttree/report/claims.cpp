@@ -104,7 +104,11 @@ Claim speed_over_raycore(const Evaluation& evaluation) {
   Claim claim{"Times as fast as RayCore, on Bunny", "", 3.9, {}, 2, "Bunny is not here"};
   if (const EvaluatedScene* bunny = find(evaluation, "bunny")) {
     claim.ours = kRayCoreMs / bunny->runs[kAsic65].time_ms;
-    claim.reason = "RayCore's scene has 64,000 triangles, Bunny 69,451; both times as published";
+    const double scaled = bunny->runs[kFpga].time_ms * 163 / 500;  // as the paper does
+    claim.reason = fmt::format(
+        "with the timing of its own memory; with the prototype's cycles at 500 MHz, as the paper "
+        "has it, {:.2f}. RayCore's time is as published, for a scene of 64,000 triangles",
+        kRayCoreMs / scaled);
   }
   return claim;
 }

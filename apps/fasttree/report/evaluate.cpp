@@ -67,7 +67,7 @@ void simulate_all(Context& context, const std::vector<ExploredScene>& scenes, Ev
     scene.name = scene.paper != nullptr ? scene.paper->scene : scenes[s].scene.mesh.name;
     scene.source = std::filesystem::path(scenes[s].name).filename().string();
     scene.triangles = scenes[s].scene.view.triangle_count;
-    std::string refusal;
+    std::string refusal = scene.triangles == 0 ? "it has no triangles" : "";
     for (std::size_t m = 0; m < kMachines; ++m) {
       scene.runs.push_back(made.runs[m * scenes.size() + s]);
       const ExploredRun& run = scene.runs.back();
@@ -76,7 +76,7 @@ void simulate_all(Context& context, const std::vector<ExploredScene>& scenes, Ev
     if (refusal.empty()) {
       result.scenes.push_back(std::move(scene));
     } else {
-      result.skipped.push_back({scene.name, refusal, "a smaller scene, or another configuration"});
+      result.skipped.push_back({scene.name, refusal, "another file, or a smaller scene"});
     }
   }
   if (result.scenes.empty()) {

@@ -23,6 +23,7 @@ img { display: block; max-width: 100%; height: auto; border-radius: 0.4rem; back
 .pair > * { min-width: 0; }
 .scroll { margin: 0.8rem 0; }
 caption { text-align: left; color: var(--soft); padding-bottom: 0.3rem; }
+th, td { padding: 0.25rem 0.45rem; }
 thead th { border-bottom: 2px solid var(--line); vertical-align: bottom; }
 tbody th { color: var(--text); font-weight: 500; }
 th.words, td.words { text-align: left; white-space: normal; min-width: 9rem; }
@@ -37,7 +38,7 @@ svg.strip { height: 1.1rem; border-radius: 0.15rem; }
 rect.less { fill: #009e73; } rect.more { fill: #d55e00; }
 path.middle { stroke: var(--soft); fill: none; vector-effect: non-scaling-stroke; }
 @media (max-width: 44rem) {
-  .bar { grid-template-columns: 1fr 8.5rem; margin-bottom: 0.35rem; }
+  .bar { grid-template-columns: 1fr 9.5rem; margin-bottom: 0.35rem; }
   .tornado .bar { grid-template-columns: 1fr; margin-bottom: 0.6rem; }
   .bar > span:first-child { grid-column: 1 / -1; }
 }
