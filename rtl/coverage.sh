@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 . scripts/lib.sh
 
 tests='^Rtl'
-if [ $# -gt 0 ]; then tests=$(IFS='|'; echo "^(${*//Rtl/Rtl})"); fi
+if [ $# -gt 0 ]; then tests=$(IFS='|'; echo "^($*)"); fi
 export FASTTREE_RTL_COVERAGE=$PWD/out/rtl-coverage
 mkdir -p "$FASTTREE_RTL_COVERAGE"
 rm -f "$FASTTREE_RTL_COVERAGE"/*
@@ -36,11 +36,10 @@ for line in open(f"{folder}/all.dat", errors="replace"):
     key = dict(part.split("\2", 1) for part in found[1].split("\1") if "\2" in part)
     kind = key["page"].split("/")[0][2:]
     points[os.path.basename(key["f"]), kind, int(key["l"]), key["o"]] += int(found[2])
-sources = {os.path.basename(name): name.strip() for name in open("rtl/fasttree.f") if ".sv" in name}
+sources = {os.path.basename(name): name for name in open("rtl/fasttree.f").read().split() if ".sv" in name}
 totals = collections.Counter()
 with open(f"{folder}/uncovered.txt", "w") as uncovered:
     for (file, kind, line, what), count in sorted(points.items()):
-        # Text of failed assertions.
         text = open(f"rtl/{sources[file]}").read().splitlines()[line - 1].strip()
         totals[file, kind] += 1
         totals[file, kind, "covered"] += count > 0

@@ -143,5 +143,23 @@ TEST(RtlQuantiser, HasTheLibrarysCellEdges) {
   EXPECT_GT(stream.values(), 100000u);
 }
 
+/// Products half-way between two values, of which the even one is a cell's edge; and differences of
+/// subnormal values.
+TEST(RtlQuantiser, RoundsTiesToEvenAndTakesSubnormalValues) {
+  fasttree::test::Random random(7);
+  Stream stream;
+  for (std::uint32_t cell = 25168; cell < 32768; cell += 3) {
+    // Exact, and three halves of it are a unit in the tenth place below the cell's edge.
+    const auto third = static_cast<float>((1024 * cell - 1) / 3);
+    stream.put({0.0f, 1.5f}, kMaxAxisBits, std::ldexp(third, -9));
+  }
+  for (int i = 0; i < 20000; ++i) {
+    const float lo = std::ldexp(random.in(-1, 1), -126);
+    stream.put({lo, 0x1p127f}, kMaxAxisBits, lo + std::ldexp(random.in(0, 1), -124));
+  }
+  stream.drain();
+  EXPECT_EQ(stream.wrong(), 0);
+}
+
 }  // namespace
 }  // namespace fasttree::rtl
