@@ -100,7 +100,7 @@ static inline int ft_accel_probe(const ft_accel* device) {
  * host to know or to bound: six a triangle is what the depth rule allows. */
 static inline uint64_t ft_accel_plan(ft_accel_order* order, uint32_t base, uint32_t triangles,
                                      uint32_t references, uint32_t depth) {
-  const uint64_t cells = (uint64_t)1 << depth;
+  const uint64_t cells = (uint64_t)1 << (depth <= 30 ? depth : 30);
   const uint64_t most = references < cells ? references : cells;
   const uint64_t leaves = most > 0 ? most : 1;
   const uint64_t marks = 2 * cells / 8 > 64 ? 2 * cells / 8 : 64;
