@@ -45,7 +45,7 @@ class Running {
       server_->run([this] { return !stop_; },
                    [this](const SessionEnd& end) {
                      const std::lock_guard lock(mutex_);
-                     ends_.push_back(end);
+                     if (ends_.size() < 16) ends_.push_back(end);  // memory is watched
                    });
     });
   }
