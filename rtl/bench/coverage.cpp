@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rtl/bench/coverage.h"
+#include "coverage.h"
 
 #include <unistd.h>
 #include <verilated_cov.h>
