@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/lib.sh
 
-mapfile -t sources < <(find apps bench fuzz include model render scene src tests \
+mapfile -t sources < <(find apps bench device fuzz include model render rtl scene src tests \
   -path '*/corpus/*' -prune -o \( -name '*.cpp' -o -name '*.h' -o -name '*.c' \) -print | sort)
 bad=0
 for file in "${sources[@]}"; do

@@ -40,7 +40,9 @@ class Bench {
   }
 
   /// Combinational outputs follow the inputs.
-  void settle() { unit.eval(); }
+  void settle() {
+    unit.eval();
+  }
 
   /// One rising edge.
   void cycle() {
@@ -51,14 +53,22 @@ class Bench {
     ++cycles_;
   }
 
-  std::uint64_t cycles() const { return cycles_; }
+  std::uint64_t cycles() const {
+    return cycles_;
+  }
 
   /// True with a probability of `percent` in a hundred.
-  bool chance(unsigned percent) { return random_() % 100 < percent; }
-  std::uint32_t random() { return random_(); }
+  bool chance(unsigned percent) {
+    return random_() % 100 < percent;
+  }
+  std::uint32_t random() {
+    return random_();
+  }
 
   /// Assertions of the RTL that have failed so far.
-  int failed_assertions() const { return context_.errorCount(); }
+  int failed_assertions() const {
+    return context_.errorCount();
+  }
 
  private:
   /// Set before the unit is made, whose registers begin at random.

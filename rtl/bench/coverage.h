@@ -7,8 +7,9 @@
 
 namespace fasttree::rtl {
 
-/// Adds the counts of a bench that ends to those of the benches before it. At the program's end all are
-/// in the file PID.dat of the folder $FASTTREE_RTL_COVERAGE, in the format of verilator_coverage.
+/// Adds the counts of a bench that ends to those of the benches before it. At the program's end all
+/// are in the file PID.dat of the folder $FASTTREE_RTL_COVERAGE, in the format of
+/// verilator_coverage.
 void add_coverage(VerilatedContext& context);
 
 }  // namespace fasttree::rtl
