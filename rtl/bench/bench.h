@@ -9,9 +9,7 @@
 #include <random>
 #include <string>
 
-#ifdef FASTTREE_RTL_COVERAGE
 #include "rtl/bench/coverage.h"
-#endif
 
 namespace fasttree::rtl {
 
@@ -25,9 +23,7 @@ class Bench {
   }
   ~Bench() {
     unit.final();
-#ifdef FASTTREE_RTL_COVERAGE
     add_coverage(context_);
-#endif
     // A model's destructor goes to the thread's context, which may be a later bench's.
     Verilated::threadContextp(&context_);
   }
@@ -40,9 +36,7 @@ class Bench {
   }
 
   /// Combinational outputs follow the inputs.
-  void settle() {
-    unit.eval();
-  }
+  void settle() { unit.eval(); }
 
   /// One rising edge.
   void cycle() {
@@ -53,22 +47,14 @@ class Bench {
     ++cycles_;
   }
 
-  std::uint64_t cycles() const {
-    return cycles_;
-  }
+  std::uint64_t cycles() const { return cycles_; }
 
   /// True with a probability of `percent` in a hundred.
-  bool chance(unsigned percent) {
-    return random_() % 100 < percent;
-  }
-  std::uint32_t random() {
-    return random_();
-  }
+  bool chance(unsigned percent) { return random_() % 100 < percent; }
+  std::uint32_t random() { return random_(); }
 
   /// Assertions of the RTL that have failed so far.
-  int failed_assertions() const {
-    return context_.errorCount();
-  }
+  int failed_assertions() const { return context_.errorCount(); }
 
  private:
   /// Set before the unit is made, whose registers begin at random.
