@@ -21,6 +21,7 @@ using model::Field;
 using model::FieldValue;
 using model::MachineConfig;
 using model::Section;
+using model::text_of;
 
 std::string key_of(const std::string& change) {
   return change.substr(0, change.find('='));
@@ -46,13 +47,6 @@ DesignPoint point_of(const MachineConfig& base, std::vector<std::string> changes
   }
   if (point.label.empty()) point.label = "base";
   return point;
-}
-
-std::string text_of(const FieldValue& value) {
-  if (const bool* b = std::get_if<bool>(&value)) return *b ? "true" : "false";
-  if (const auto* n = std::get_if<std::uint64_t>(&value)) return std::to_string(*n);
-  if (const auto* d = std::get_if<double>(&value)) return fmt::format("{}", *d);
-  return std::get<std::string>(value);
 }
 
 /// Half and twice a number as far as allowed, what a flag is not, the other choices.

@@ -79,9 +79,7 @@ Engine model_engine(const model::MachineConfig& config) {
 }
 
 Result<Engine> rtl_engine(const model::MachineConfig& config) {
-  // A scene without triangles is built in no time, where anything can be.
-  const auto trial = rtl::simulate_rtl(MeshView(), config, model::SimulationOptions());
-  if (!trial.ok() && trial.status().code() == StatusCode::invalid_argument) return trial.status();
+  if (Status status = rtl::check_built(config); !status.ok()) return status;
   return machine_engine("rtl", config,
                         [](const MeshView& mesh, const model::MachineConfig& machine,
                            const model::SimulationOptions& options) {

@@ -6,9 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <set>
-#include <sstream>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "model/config/sections.h"
@@ -16,20 +14,12 @@
 namespace fasttree::model {
 namespace {
 
-std::string text_of(const FieldValue& value) {
-  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
-  if (const auto* text = std::get_if<std::string>(&value)) return text->empty() ? "-" : *text;
-  std::ostringstream number;
-  if (const auto* count = std::get_if<std::uint64_t>(&value)) number << *count;
-  if (const double* real = std::get_if<double>(&value)) number << *real;
-  return number.str();
-}
-
 /// A key's row in the page's table of its section.
 std::string row_of(const Section& section, const Field& field) {
   MachineConfig config;
-  return "| `" + field.key + "` | " + text_of(field.get(section.of(config))) + " | " +
-         allowed(field) + " | " + field.comment + " |";
+  const std::string value = text_of(field.get(section.of(config)));
+  return "| `" + field.key + "` | " + (value.empty() ? "-" : value) + " | " + allowed(field) +
+         " | " + field.comment + " |";
 }
 
 /// Rows of keys below the heading of a section, up to the next heading.

@@ -176,16 +176,12 @@ std::optional<FieldValue> value_of(const Field& field, std::string text) {
   return std::nullopt;
 }
 
-std::string text_of(const FieldValue& value) {
-  if (const bool* b = std::get_if<bool>(&value)) return *b ? "true" : "false";
-  if (const auto* n = std::get_if<std::uint64_t>(&value)) return std::to_string(*n);
-  if (const auto* s = std::get_if<std::string>(&value)) return '"' + *s + '"';
-  // The shortest text that reads as the same number, with a point so that it is no whole one.
-  char text[64];
-  const auto end = std::to_chars(text, text + sizeof text, std::get<double>(value)).ptr;
-  std::string number(text, end);
-  if (number.find_first_of(".en") == std::string::npos) number += ".0";
-  return number;
+std::string toml_of(const FieldValue& value) {
+  const std::string text = text_of(value);
+  if (std::holds_alternative<std::string>(value)) return '"' + text + '"';
+  // A point, so that a real number is no whole one.
+  const bool whole = text.find_first_of(".en") == std::string::npos;
+  return std::holds_alternative<double>(value) && whole ? text + ".0" : text;
 }
 
 }  // namespace
@@ -280,7 +276,7 @@ std::string to_toml(const MachineConfig& config) {
     if (!section.name.empty()) text += "\n# " + section.comment + "\n[" + section.name + "]\n";
     for (const Field& field : section.fields) {
       text += "# " + field.comment + " (" + allowed(field) + ")\n";
-      text += field.key + " = " + text_of(field.get(section.of(copy))) + "\n";
+      text += field.key + " = " + toml_of(field.get(section.of(copy))) + "\n";
     }
   }
   return text;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
@@ -136,6 +137,15 @@ Status set_field(const Section& section, const Field& field, MachineConfig& conf
   }
   field.set(section.of(config), value);
   return {};
+}
+
+std::string text_of(const FieldValue& value) {
+  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const auto* count = std::get_if<std::uint64_t>(&value)) return std::to_string(*count);
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  // The shortest that reads as the same number.
+  char text[64];
+  return {text, std::to_chars(text, text + sizeof text, std::get<double>(value)).ptr};
 }
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& words) {

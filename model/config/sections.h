@@ -29,6 +29,9 @@ Status set_field(const Section& section, const Field& field, MachineConfig& conf
 /// What a field may hold, in words: "1 to 64", "one of burst, row".
 std::string allowed(const Field& field);
 
+/// A field's value as --set takes it: "true", "16", "0.5", "burst".
+std::string text_of(const FieldValue& value);
+
 /// The word nearest to `word` by edit distance, or empty where none is near.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& words);
 

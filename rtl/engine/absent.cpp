@@ -13,6 +13,10 @@ Status absent() {
 
 }  // namespace
 
+Status check_built(const model::MachineConfig&) {
+  return absent();
+}
+
 Result<model::SimulationResult> simulate_rtl(const MeshView&, const model::MachineConfig&,
                                              const model::SimulationOptions&, const RtlOptions&) {
   return absent();

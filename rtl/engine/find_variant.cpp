@@ -3,6 +3,8 @@
 #include <array>
 #include <string_view>
 
+#include "model/config/sections.h"
+#include "rtl/engine/rtl_machine.h"
 #include "rtl/engine/variants.h"
 
 namespace fasttree::rtl {
@@ -25,13 +27,6 @@ constexpr std::array<std::string_view, 13> kFree{
     "bus_commands_per_cycle",
 };
 
-std::string text(const model::FieldValue& value) {
-  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
-  if (const auto* count = std::get_if<std::uint64_t>(&value)) return std::to_string(*count);
-  if (const double* real = std::get_if<double>(&value)) return std::to_string(*real);
-  return std::get<std::string>(value);
-}
-
 // Keys in which the two differ, "key = ours (not theirs)".
 std::vector<std::string> differences(const model::PaperConfig& wanted,
                                      const model::PaperConfig& built) {
@@ -40,9 +35,9 @@ std::vector<std::string> differences(const model::PaperConfig& wanted,
   std::vector<std::string> list;
   for (const model::Field& field : fields.list()) {
     if (std::find(kFree.begin(), kFree.end(), field.key) != kFree.end()) continue;
-    const std::string a = text(field.get(&wanted));
-    const std::string b = text(field.get(&built));
-    if (a != b) list.push_back("paper." + field.key + " = " + b + ", not " + a);
+    const model::FieldValue a = field.get(&wanted), b = field.get(&built);
+    if (a == b) continue;
+    list.push_back("paper." + field.key + " = " + model::text_of(b) + ", not " + model::text_of(a));
   }
   return list;
 }
@@ -69,6 +64,10 @@ Result<const Variant*> find_variant(const model::MachineConfig& config) {
   for (std::size_t i = 0; i < nearest.size(); ++i) message += (i > 0 ? "; " : "") + nearest[i];
   message += ". Take that, or build another variant (docs/accelerator/rtl.md).";
   return Status(StatusCode::invalid_argument, message);
+}
+
+Status check_built(const model::MachineConfig& config) {
+  return find_variant(config).status();
 }
 
 }  // namespace fasttree::rtl

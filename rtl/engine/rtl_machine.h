@@ -35,10 +35,13 @@ struct RtlOptions {
   std::function<void(const model::ByteStore&)> inspect;
 };
 
+/// invalid_argument: no RTL was built for the configuration.
+Status check_built(const model::MachineConfig& config);
+
 /// Runs the machine. The host checks the scene and works its depth out as for the model; the
 /// accelerator refuses what it finds itself: bad_input (a coordinate), resource_limit (room, the
 /// watchdog, max_cycles), io_error (memory answered with an error). cancelled.
-/// invalid_argument: no RTL was built for the configuration.
+/// invalid_argument: as check_built().
 Result<model::SimulationResult> simulate_rtl(const MeshView& mesh,
                                              const model::MachineConfig& config,
                                              const model::SimulationOptions& options,
