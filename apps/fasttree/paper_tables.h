@@ -8,6 +8,9 @@
 
 namespace fasttree::app {
 
+/// Clocks of the prototype, and of the ASIC.
+inline constexpr double kPaperFpgaMhz = 163, kPaperAsicMhz = 500;
+
 /// A row of Table II.
 struct PaperBuild {
   const char* scene;  ///< as the paper calls it

@@ -11,8 +11,6 @@
 namespace fasttree::app {
 namespace {
 
-constexpr double kFpgaMhz = 163, kAsicMhz = 500;
-
 double cycles_of(double ms, double mhz, std::uint64_t triangles) {
   return ms * mhz * 1e3 / static_cast<double>(triangles);
 }
@@ -72,22 +70,22 @@ std::vector<Compared> reproduce_table2(const std::string& scene, const PaperBuil
   Compared prototype = row_of(scene, paper, fpga);
   prototype.figure = "FPGA, 163 MHz";
   prototype.how = "paper-fpga";
-  if (paper != nullptr) set_paper(prototype, paper->fpga_ms, kFpgaMhz);
+  if (paper != nullptr) set_paper(prototype, paper->fpga_ms, kPaperFpgaMhz);
   prototype.reason = fmt::format("{}; the paper leaves the bus and its memory traffic open{}",
                                  where_time_goes(fpga), other_size(prototype));
 
   Compared scaled = row_of(scene, paper, fpga);
   scaled.figure = "ASIC, scaled";
   scaled.how = "paper-fpga x 163/500";
-  scaled.time_ms = fpga.time_ms * kFpgaMhz / kAsicMhz;
-  if (paper != nullptr) set_paper(scaled, paper->asic_ms, kAsicMhz);
+  scaled.time_ms = fpga.time_ms * kPaperFpgaMhz / kPaperAsicMhz;
+  if (paper != nullptr) set_paper(scaled, paper->asic_ms, kPaperAsicMhz);
   scaled.reason =
       "the paper's ASIC times are its FPGA's times 163/500, memory included" + other_size(scaled);
 
   Compared timed = row_of(scene, paper, asic);
   timed.figure = "ASIC, own memory";
   timed.how = "paper-asic65";
-  if (paper != nullptr) set_paper(timed, paper->asic_ms, kAsicMhz);
+  if (paper != nullptr) set_paper(timed, paper->asic_ms, kPaperAsicMhz);
   timed.reason = fmt::format(
       "{:+.1f} % cycles over the FPGA: {:.2f} GB/s out of LPDDR3, whose latency the faster clock "
       "makes longer{}",
@@ -110,7 +108,7 @@ std::vector<Compared> reproduce_table3(const std::string& scene, const PaperBuil
     // Power scales as the paper's does, 0.8 W for 3.9 W.
     row.power_w = fmt::format("{:.2f}", run->machine_power_w * (small ? 0.8 / 3.9 : 1));
     const bool of_paper = run->config.rfind("paper-asic", 0) == 0;
-    if (has_paper && of_paper) set_paper(row, paper->asic_ms, kAsicMhz);
+    if (has_paper && of_paper) set_paper(row, paper->asic_ms, kPaperAsicMhz);
     row.reason = of_paper ? "area is the paper's by calibration; power is the run's mean, the "
                             "paper's with everything busy"
                           : "no machine of the paper; area and power at its size of a gate, 65 nm";

@@ -29,7 +29,7 @@ const EvaluatedScene* find(const Evaluation& evaluation, std::string_view file) 
 Claim clock(const Evaluation& evaluation) {
   return {"Clock of the FPGA prototype",
           "MHz",
-          163,
+          kPaperFpgaMhz,
           evaluation.table1.back().mhz,
           0,
           "ours is the slowest unit by a table of delays, without place and route (Table I)"};
@@ -104,7 +104,8 @@ Claim speed_over_raycore(const Evaluation& evaluation) {
   Claim claim{"Times as fast as RayCore, on Bunny", "", 3.9, {}, 2, "Bunny is not here"};
   if (const EvaluatedScene* bunny = find(evaluation, "bunny")) {
     claim.ours = kRayCoreMs / bunny->runs[kAsic65].time_ms;
-    const double scaled = bunny->runs[kFpga].time_ms * 163 / 500;  // as the paper does
+    const double scaled =
+        bunny->runs[kFpga].time_ms * kPaperFpgaMhz / kPaperAsicMhz;  // as the paper does
     claim.reason = fmt::format(
         "with the timing of its own memory; with the prototype's cycles at 500 MHz, as the paper "
         "has it, {:.2f}. RayCore's time is as published, for a scene of 64,000 triangles",

@@ -75,6 +75,14 @@ std::string tiles(const std::vector<std::pair<std::string, std::string>>& values
   return text + "</div>\n";
 }
 
+std::string subheading(const std::string& text) {
+  return "<h3>" + escaped_html(text) + "</h3>\n";
+}
+
+std::string folded(const std::string& summary, const std::string& html) {
+  return "<details>\n<summary>" + escaped_html(summary) + "</summary>\n" + html + "</details>\n";
+}
+
 std::string paragraph(const std::string& html) {
   return "<p>" + html + "</p>\n";
 }
@@ -93,8 +101,7 @@ std::string html_page(const std::string& title, const std::string& lead,
   }
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src "
-         "data:; "
-         "style-src 'unsafe-inline'\">\n"
+         "data:; style-src 'unsafe-inline'\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
          escaped_html(title) + "</title>\n<style>" + model::kHtmlStyle + kPageStyle +
          "</style>\n</head>\n<body>\n<header>\n<h1>" + escaped_html(title) + "</h1>\n" + lead +

@@ -49,6 +49,9 @@ std::string picture(const std::string& source, const std::string& alt, std::size
 /// Numbers in large type, each with what it is.
 std::string tiles(const std::vector<std::pair<std::string, std::string>>& values);
 
+std::string subheading(const std::string& text);
+/// `html` behind a line that unfolds it.
+std::string folded(const std::string& summary, const std::string& html);
 std::string paragraph(const std::string& html);
 std::string note(const std::string& html);  ///< in a softer colour
 

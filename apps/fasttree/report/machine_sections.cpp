@@ -115,21 +115,20 @@ report::PageSection machines_section(const Evaluation& evaluation) {
 }
 
 report::PageSection stages_section(const Evaluation& evaluation) {
+  const char* what = "Cycles and bytes by stage";
   return {
       "stages", "Where the cycles go",
-      cycles_plot(evaluation) + "<details>\n<summary>Cycles and bytes by stage</summary>\n" +
-          report::html_table("Cycles and bytes by stage", stage_table(evaluation).cells(), {1, 2}) +
-          "</details>\n"};
+      cycles_plot(evaluation) +
+          report::folded(what, report::html_table(what, stage_table(evaluation).cells(), {1, 2}))};
 }
 
 report::PageSection bandwidth_section(const Evaluation& evaluation) {
   std::string body = paragraph(
       "Bytes over the bus during a build, beside what memory and bus can move at most. Thin lines "
       "are where one stage ends and the next begins. fasttree-2 counts bytes when the memory "
-      "accepts "
-      "a request: after a pause its queues fill faster than the peak, for a moment.");
+      "accepts a request: after a pause its queues fill faster than the peak, for a moment.");
   for (const EvaluatedScene& scene : evaluation.scenes) {
-    body += "<h3>" + escaped_html(scene.name) + "</h3>\n<div class=\"pair\">\n";
+    body += report::subheading(scene.name) + "<div class=\"pair\">\n";
     for (const Machine machine : {kAsic65, kFastTree2}) {
       body += bandwidth_figure(scene, evaluation.machines[machine], scene.runs[machine]);
     }
@@ -141,21 +140,19 @@ report::PageSection bandwidth_section(const Evaluation& evaluation) {
 report::PageSection assumptions_section(const Evaluation& evaluation) {
   std::string body = paragraph(
       "The paper leaves much open. Each key below fills a gap or repeats what the paper states; "
-      "one "
-      "at a time is changed, and the machine simulated again. Two designs whose difference is less "
+      "one at a time is changed, and the machine simulated again. Two designs whose difference is "
+      "less "
       "than what an open assumption is worth are not told apart.");
   for (const Sensitivity& sensitivity : evaluation.sensitivities) {
-    body += "<h3>" + escaped_html(sensitivity.config) + "</h3>\n" + tornado_of(sensitivity);
-    body += "<details>\n<summary>All changes of " + escaped_html(sensitivity.config) +
-            ", with area and energy</summary>\n" +
-            report::html_table(
-                fmt::format("What one change is worth: {} on {}, from {:.3f} ms, {:.2f} mm2 at 65 "
-                            "nm, {:.1f} uJ",
-                            sensitivity.config, sensitivity.scene, sensitivity.base.time_ms,
-                            sensitivity.base.area_65nm_mm2, sensitivity.base.energy_uj),
-                change_table(sensitivity).cells(), {6});
-    for (const std::string& refused : sensitivity.refused) body += note(escaped_html(refused));
-    body += "</details>\n";
+    std::string all = report::html_table(
+        fmt::format("What one change is worth: {} on {}, from {:.3f} ms, {:.2f} mm2 at 65 "
+                    "nm, {:.1f} uJ",
+                    sensitivity.config, sensitivity.scene, sensitivity.base.time_ms,
+                    sensitivity.base.area_65nm_mm2, sensitivity.base.energy_uj),
+        change_table(sensitivity).cells(), {6});
+    for (const std::string& refused : sensitivity.refused) all += note(escaped_html(refused));
+    body += report::subheading(sensitivity.config) + tornado_of(sensitivity) +
+            report::folded("All changes of " + sensitivity.config + ", with area and energy", all);
   }
   return {"assumptions", "What each assumption is worth", body};
 }

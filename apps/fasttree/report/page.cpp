@@ -86,8 +86,7 @@ report::PageSection method_section(const Evaluation& evaluation) {
 std::string page_of(const Evaluation& evaluation) {
   std::string lead = paragraph(
       "The evaluation of the FastTree paper, made anew: its machine as a cycle-level model, its "
-      "RTL "
-      "through synthesis, and the tree by a library on a processor, each value beside the "
+      "RTL through synthesis, and the tree by a library on a processor, each value beside the "
       "paper's.");
   if (evaluation.settings.quick) {
     lead += note(

@@ -100,7 +100,7 @@ report::PageSection scenes_section(const Evaluation& evaluation) {
           "References a triangle: in how many cells of the grid one lies. <em>Same tree</em>: the "
           "trees of all simulated machines have the hash of the library's, profile paper.");
   if (!evaluation.skipped.empty()) {
-    body += "<h3>What is missing</h3>\n" +
+    body += report::subheading("What is missing") +
             report::html_table("Scenes that are not in this report",
                                skipped_table(evaluation).cells(), {1, 2}) +
             note(
@@ -127,6 +127,7 @@ report::PageSection figure1_section(const Evaluation& evaluation) {
     }
     groups.push_back(std::move(group));
   }
+  const auto parts = figure1_table(evaluation).cells();
   return {
       "figure1", "Frame time: construction and traversal (Figure 1)",
       paragraph("The paper's Figure 1, after Wu et al., shows that construction dominates the "
@@ -143,9 +144,8 @@ report::PageSection figure1_section(const Evaluation& evaluation) {
           report::figure(report::stacked_bars({"tree", "layout for the tracer", "tracing"}, "ms",
                                               groups, false),
                          "Each scene has a scale of its own: its slowest frame fills the width.") +
-          report::html_table(
-              "Parts of a frame", figure1_table(evaluation).cells(), {1},
-              std::vector<bool>(figure1_table(evaluation).cells().size() - 1, true))};
+          report::html_table("Parts of a frame", parts, {1},
+                             std::vector<bool>(parts.size() - 1, true))};
 }
 
 report::PageSection table1_section(const Evaluation& evaluation) {
